@@ -1,0 +1,310 @@
+// `meniscus render`: structure files -> pictures. Files are read one after the other; the OpenGL context is
+// made when the first picture is ready to be drawn, so that what is wrong with an input or an output is said
+// without waiting for it.
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <glm/trigonometric.hpp>
+#include <memory>
+#include <new>
+#include <set>
+#include <utility>
+
+#include "app/commands.h"
+#include "app/output_name.h"
+#include "app/progress.h"
+#include "app/render_options.h"
+#include "app/run_report.h"
+#include "core/bonds.h"
+#include "core/camera_fit.h"
+#include "core/error.h"
+#include "core/primitives.h"
+#include "io/image_writer.h"
+#include "io/output_file.h"
+#include "render/renderer.h"
+
+namespace meniscus {
+namespace {
+
+using Molecules = std::vector<std::shared_ptr<const Molecule>>;
+
+/// Passes rows on and counts the time that takes.
+class TimedSink : public RowSink {
+ public:
+  TimedSink(RowSink& sink, double& seconds) : sink_(sink), seconds_(seconds) {}
+  void writeRows(std::span<const std::byte> rows) override {
+    const Timed timed(seconds_);
+    sink_.writeRows(rows);
+  }
+
+ private:
+  RowSink& sink_;
+  double& seconds_;
+};
+
+class RenderRun {
+ public:
+  explicit RenderRun(const RenderOptions& options)
+      : options_(options), pattern_(options.output), progress_(!options.quiet) {
+    report_.size = options.size;
+    report_.samples = options.samples;
+  }
+  int run();
+
+ private:
+  void checkBeforeReading() const;
+  void renderFile(const std::string& file);
+  Molecules readMolecules(const std::string& file);
+  void showNotes(const std::string& file, const Logger& logger);
+  SceneObject objectFor(std::shared_ptr<const Molecule> molecule) const;
+  Camera cameraFor(const std::string& file, const std::vector<SceneObject>& objects) const;
+  void drawPicture(const std::string& file, const std::string& output, Scene scene);
+  ImageFileOptions imageOptionsFor(const std::string& file, const std::string& output) const;
+  Renderer& renderer();
+  void finishReport();
+
+  const RenderOptions& options_;
+  OutputPattern pattern_;
+  Progress progress_;
+  RunReport report_;
+  std::unique_ptr<Context> context_;
+  std::unique_ptr<Renderer> renderer_;
+};
+
+int RenderRun::run() {
+  checkBeforeReading();
+  for (const std::string& file : options_.files) {
+    try {
+      renderFile(file);
+    } catch (const GraphicsError&) {
+      throw;
+    } catch (const Error& error) {
+      if (options_.files.size() == 1) throw;
+      report_.failures.push_back(error.what());
+    } catch (const std::bad_alloc&) {
+      if (options_.files.size() == 1) throw;
+      report_.failures.push_back("'" + file + "': not enough memory; draw fewer atoms or a smaller picture");
+    }
+  }
+  progress_.clear();
+  finishReport();
+  for (const std::string& failure : report_.failures) std::fprintf(stderr, "meniscus: %s\n", failure.c_str());
+  if (report_.failures.size() > 1)
+    std::fprintf(stderr, "meniscus: %zu of %zu files failed\n", report_.failures.size(),
+                 options_.files.size());
+  return static_cast<int>(report_.failures.empty() ? ExitCode::ok : ExitCode::badInput);
+}
+
+// What is wrong whatever the files hold.
+void RenderRun::checkBeforeReading() const {
+  requireDistinctOutputs(pattern_, options_.files);
+  for (const auto& [option, cid] :
+       {std::pair{"--select", options_.structure.select}, std::pair{"--focus", options_.focus}}) {
+    try {
+      if (!cid.empty()) selectAtoms(Molecule{}, cid);
+    } catch (const UsageError& error) {
+      throw UsageError(fmt::format("{}: {}", option, error.what()));
+    }
+  }
+  if (!pattern_.namesModel())
+    for (const std::string& file : options_.files) requireWritable(pattern_.nameFor(file, 1));
+  if (!options_.statsFile.empty()) requireWritable(options_.statsFile);
+}
+
+void RenderRun::renderFile(const std::string& file) {
+  const Molecules molecules = readMolecules(file);
+  std::vector<SceneObject> objects;
+  for (const auto& molecule : molecules) objects.push_back(objectFor(molecule));
+  Scene scene;
+  scene.background = options_.background;
+  scene.camera = cameraFor(file, objects);
+
+  if (!pattern_.namesModel()) {
+    scene.objects = std::move(objects);
+    drawPicture(file, pattern_.nameFor(file, molecules.front()->model), std::move(scene));
+    return;
+  }
+  std::set<std::string> outputs;
+  for (const auto& molecule : molecules) outputs.insert(pattern_.nameFor(file, molecule->model));
+  if (outputs.size() < molecules.size())
+    throw InputError(
+        fmt::format("'{}': has several models of the same number, so {{model}} cannot tell them apart; "
+                    "choose one with --model",
+                    file));
+  for (SceneObject& object : objects) {
+    const std::string output = pattern_.nameFor(file, object.molecule->model);
+    scene.objects.clear();
+    scene.objects.push_back(std::move(object));
+    drawPicture(file, output, scene);
+  }
+}
+
+Molecules RenderRun::readMolecules(const std::string& file) {
+  Logger logger;
+  StructureFile structure;
+  {
+    const Timed timed(report_.parseSeconds);
+    structure = readStructure(file, options_.structure, logger);
+  }
+  Molecules molecules;
+  for (Molecule& molecule : structure.models) {
+    if (needsBonds(options_.representation)) {
+      const Timed timed(report_.bondsSeconds);
+      addMissingBonds(molecule, logger);
+    }
+    molecules.push_back(std::make_shared<const Molecule>(std::move(molecule)));
+  }
+  showNotes(file, logger);
+  return molecules;
+}
+
+void RenderRun::showNotes(const std::string& file, const Logger& logger) {
+  constexpr std::size_t kMostNotes = 5;
+  if (options_.quiet) return;
+  progress_.clear();
+  const std::vector<std::string>& notes = logger.notes();
+  for (std::size_t i = 0; i < notes.size() && i < kMostNotes; ++i)
+    std::fprintf(stderr, "meniscus: %s: note: %s\n", file.c_str(), notes[i].c_str());
+  if (notes.size() > kMostNotes)
+    std::fprintf(stderr, "meniscus: %s: note: ... and %zu more (meniscus info %s shows all)\n", file.c_str(),
+                 notes.size() - kMostNotes, file.c_str());
+}
+
+SceneObject RenderRun::objectFor(std::shared_ptr<const Molecule> molecule) const {
+  SceneObject object;
+  object.placements =
+      options_.assembly.empty() ? placeOnce(*molecule) : placeAssembly(*molecule, options_.assembly);
+  if (options_.replicate != glm::ivec3(1))
+    object.placements = replicate(*molecule, object.placements, options_.replicate);
+  object.molecule = std::move(molecule);
+  object.representation = options_.representation;
+  object.coloring = options_.coloring;
+  object.radii = options_.radii;
+  object.ballScale = options_.ballScale.value_or(object.ballScale);
+  object.stickRadius = options_.stickRadius.value_or(object.stickRadius);
+  object.licoriceRadius = options_.stickRadius.value_or(object.licoriceRadius);
+  return object;
+}
+
+// One camera for all models of a file, so that they can be compared and make a film; it looks as suits the
+// first.
+Camera RenderRun::cameraFor(const std::string& file, const std::vector<SceneObject>& objects) const {
+  std::vector<FitSphere> spheres;
+  for (const SceneObject& object : objects) {
+    std::vector<std::uint32_t> atoms;
+    if (!options_.focus.empty()) {
+      atoms = selectAtoms(*object.molecule, options_.focus);
+      if (atoms.empty()) continue;
+    }
+    const std::vector<FitSphere> some = fitSpheres(object, atoms);
+    spheres.insert(spheres.end(), some.begin(), some.end());
+  }
+  if (spheres.empty())
+    throw InputError(
+        fmt::format("'{}': --focus '{}' matches none of the atoms that are drawn; see meniscus info", file,
+                    options_.focus));
+
+  Camera camera;
+  camera.projection = options_.orthographic ? Projection::orthographic : Projection::perspective;
+  camera.fovY = glm::radians(options_.fovYDeg);
+  camera.zoom = options_.zoom;
+  switch (options_.orientation.kind) {
+    case Orientation::Kind::principal:
+      camera.orientation =
+          principalAxes(fitSpheres(objects.front()), options_.size.height > options_.size.width);
+      break;
+    case Orientation::Kind::axis:
+      camera.orientation = lookDownAxis(options_.orientation.axis);
+      break;
+    case Orientation::Kind::quaternion:
+      camera.orientation = options_.orientation.quaternion;
+      break;
+  }
+  camera.orientation = rotatedBy(camera.orientation, options_.rotationDeg);
+  return fitted(camera, options_.size, spheres);
+}
+
+void RenderRun::drawPicture(const std::string& file, const std::string& output, Scene scene) {
+  PictureReport picture;
+  picture.input = file;
+  picture.output = output;
+  for (const SceneObject& object : scene.objects) {
+    picture.atoms += object.molecule->atomCount();
+    picture.bonds += object.molecule->bonds.size();
+  }
+  const ImageFileOptions imageOptions = imageOptionsFor(file, output);
+  const std::unique_ptr<ImageFile> image = ImageFile::create(output, imageOptions);
+  std::shared_ptr<const Primitives> primitives;
+  {
+    const Timed timed(report_.primitivesSeconds);
+    primitives = std::make_shared<const Primitives>(buildPrimitives(scene));
+    scene.objects.clear();
+  }
+  picture.spheres = primitives->spheres.size();
+  picture.cylinders = primitives->cylinders.size();
+
+  const View view = makeView(scene.camera, options_.size, primitives->bounds());
+  RenderSettings settings;
+  settings.samples = options_.samples;
+  progress_.start(fmt::format("{} -> {}", file, output));
+  Renderer& draw = renderer();
+  draw.setPrimitives(std::move(primitives));
+  TimedSink sink(*image, report_.encodeSeconds);
+  draw.renderPicture(view, scene.lighting, scene.background, settings, imageOptions.format, sink,
+                     [this](double share) { progress_.update(share); });
+  {
+    const Timed timed(report_.encodeSeconds);
+    image->finish();
+  }
+  report_.pictures.push_back(std::move(picture));
+}
+
+ImageFileOptions RenderRun::imageOptionsFor(const std::string& file, const std::string& output) const {
+  ImageFileOptions image;
+  image.size = options_.size;
+  image.format = imageTypeOf(output) == ImageType::exr ? PixelFormat::rgbaFloat
+                 : options_.bitDepth == 16             ? PixelFormat::rgba16
+                                                       : PixelFormat::rgba8;
+  image.alpha = options_.background.transparent;
+  image.dpi = options_.dpi;
+  // The names of folders and of the output are left out: they say nothing about the picture, and the same
+  // picture should be the same bytes wherever it is made.
+  const std::string input = std::filesystem::path(file).filename().string();
+  image.metadata = {{"Software", std::string("Meniscus ") + version()},
+                    {"Source", input},
+                    {"Comment", "meniscus render " + input + options_.pictureOptions}};
+  return image;
+}
+
+Renderer& RenderRun::renderer() {
+  if (renderer_ != nullptr) return *renderer_;
+  const Timed timed(report_.contextSeconds);
+  context_ = Context::create(options_.backend);
+  RendererOptions rendererOptions;
+  rendererOptions.shaderDir = options_.shaderDir;
+  rendererOptions.timePasses = options_.explain;
+  renderer_ = std::make_unique<Renderer>(rendererOptions);
+  return *renderer_;
+}
+
+void RenderRun::finishReport() {
+  if (!options_.explain && options_.statsFile.empty()) return;
+  if (renderer_ != nullptr) {
+    report_.backend = context_->name();
+    report_.renderer = context_->rendererName();
+    report_.render = renderer_->stats();
+  }
+  addProcessUsage(report_);
+  if (options_.explain) std::fputs(explanationOf(report_).c_str(), stdout);
+  if (!options_.statsFile.empty()) writeTextFile(options_.statsFile, statsAsJson(report_));
+}
+
+}  // namespace
+
+int runRender(const std::vector<std::string>& arguments) {
+  const std::optional<RenderOptions> options = parseRenderOptions(arguments);
+  return options ? RenderRun(*options).run() : 0;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,204 @@
+#include "app/option_values.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <vector>
+
+#include "core/error.h"
+
+namespace meniscus {
+namespace {
+
+constexpr int kMaxSide = 65535;
+constexpr long long kMaxPixels = 0x7fffffff;
+constexpr long long kMaxCopies = 1'000'000;
+
+/// The whole text as a number; nothing if it is not one.
+template <typename Number>
+std::optional<Number> numberFrom(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  Number number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return number;
+}
+
+std::vector<std::string_view> split(std::string_view text, std::string_view separators) {
+  std::vector<std::string_view> parts;
+  for (;;) {
+    const std::size_t end = text.find_first_of(separators);
+    parts.push_back(text.substr(0, end));
+    if (end == std::string_view::npos) return parts;
+    text.remove_prefix(end + 1);
+  }
+}
+
+/// Exactly `count` finite numbers separated by commas; empty if the text is anything else.
+std::vector<double> numberList(std::string_view text, std::size_t count) {
+  std::vector<double> numbers;
+  for (const std::string_view part : split(text, ",")) {
+    const std::optional<double> number = numberFrom<double>(part);
+    if (!number || !std::isfinite(*number)) return {};
+    numbers.push_back(*number);
+  }
+  return numbers.size() == count ? numbers : std::vector<double>{};
+}
+
+std::string folded(std::string_view word) {
+  std::string result(word);
+  for (char& c : result) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    if (c == '-') c = '_';
+  }
+  return result;
+}
+
+}  // namespace
+
+void throwBadValue(std::string_view option, std::string_view value, std::string_view allowed) {
+  throw UsageError(fmt::format("{}: '{}' is not allowed; give {}", option, value, allowed));
+}
+
+double parseNumber(std::string_view option, std::string_view value, double least, double most,
+                   std::string_view unit) {
+  const std::optional<double> number = numberFrom<double>(value);
+  if (!number || !(*number >= least && *number <= most))
+    throwBadValue(option, value,
+                  fmt::format("a number from {} to {}{}{}", least, most, unit.empty() ? "" : " ", unit));
+  return *number;
+}
+
+int parseInteger(std::string_view option, std::string_view value, int least, int most) {
+  const std::optional<int> number = numberFrom<int>(value);
+  if (!number || *number < least || *number > most)
+    throwBadValue(option, value, fmt::format("a whole number from {} to {}", least, most));
+  return *number;
+}
+
+glm::dvec3 parseAngles(std::string_view option, std::string_view value) {
+  const std::vector<double> n = numberList(value, 3);
+  if (n.empty()) throwBadValue(option, value, "three angles in degrees, for example 0,90,0");
+  return {n[0], n[1], n[2]};
+}
+
+ImageSize parseSize(std::string_view option, std::string_view value) {
+  const std::vector<std::string_view> sides = split(value, "xX");
+  const std::optional<long long> width = numberFrom<long long>(sides.front());
+  const std::optional<long long> height = numberFrom<long long>(sides.back());
+  if (sides.size() > 2 || !width || !height || *width < 1 || *height < 1 || *width > kMaxSide ||
+      *height > kMaxSide)
+    throwBadValue(option, value,
+                  fmt::format("WIDTHxHEIGHT in pixels, each from 1 to {}, for example 1920x1080", kMaxSide));
+  if (*width * *height > kMaxPixels)
+    throwBadValue(option, value, fmt::format("a picture of at most {} pixels", kMaxPixels));
+  return {static_cast<int>(*width), static_cast<int>(*height)};
+}
+
+glm::ivec3 parseCopies(std::string_view option, std::string_view value) {
+  const std::vector<std::string_view> parts = split(value, "xX");
+  glm::ivec3 copies(1);
+  long long product = 1;
+  bool valid = parts.size() == 3;
+  for (int i = 0; valid && i < 3; ++i) {
+    const std::optional<int> n = numberFrom<int>(parts[static_cast<std::size_t>(i)]);
+    valid = n && *n >= 1 && *n <= kMaxCopies && product * *n <= kMaxCopies;
+    if (!valid) break;
+    copies[i] = *n;
+    product *= *n;
+  }
+  if (!valid)
+    throwBadValue(
+        option, value,
+        fmt::format("NxMxK, whole numbers from 1, at most {} copies, for example 3x3x3", kMaxCopies));
+  return copies;
+}
+
+std::optional<Rgb> colorFromHex(std::string_view value) {
+  if (value.starts_with('#')) value.remove_prefix(1);
+  Rgb rgb = 0;
+  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), rgb, 16);
+  if (error != std::errc() || end != value.data() + value.size()) return std::nullopt;
+  if (value.size() == 6) return rgb;
+  if (value.size() != 3) return std::nullopt;
+  return (rgb >> 8 & 0xF) * 0x110000 + (rgb >> 4 & 0xF) * 0x1100 + (rgb & 0xF) * 0x11;
+}
+
+Coloring parseColoring(std::string_view option, std::string_view value) {
+  static constexpr std::array<Choice<ColorScheme>, 6> kSchemes{{
+      {"element", ColorScheme::element},
+      {"chain", ColorScheme::chain},
+      {"residue", ColorScheme::residue},
+      {"bfactor", ColorScheme::bFactor},
+      {"plddt", ColorScheme::plddt},
+      {"rainbow", ColorScheme::rainbow},
+  }};
+  Coloring coloring;
+  const auto* scheme = std::find_if(kSchemes.begin(), kSchemes.end(),
+                                    [word = folded(value)](const auto& entry) { return entry.word == word; });
+  if (scheme != kSchemes.end()) {
+    coloring.scheme = scheme->value;
+  } else if (const std::optional<Rgb> rgb = colorFromHex(value)) {
+    coloring.scheme = ColorScheme::uniform;
+    coloring.uniform = *rgb;
+  } else {
+    throwBadValue(option, value, "element, chain, residue, bfactor, plddt, rainbow or a colour as '#RRGGBB'");
+  }
+  return coloring;
+}
+
+Background parseBackground(std::string_view option, std::string_view value) {
+  const std::string word = folded(value);
+  if (word == "white") return {0xFFFFFF, false};
+  if (word == "black") return {0x000000, false};
+  if (word == "transparent") return {0x000000, true};
+  if (const std::optional<Rgb> rgb = colorFromHex(value)) return {*rgb, false};
+  throwBadValue(option, value, "white, black, transparent or a colour as '#RRGGBB'");
+}
+
+Orientation parseOrientation(std::string_view option, std::string_view value) {
+  const std::string word = folded(value);
+  if (word == "principal") return {};
+  if (word == "x" || word == "y" || word == "z") return {Orientation::Kind::axis, word[0] - 'x'};
+  const std::vector<double> n = numberList(value, 4);
+  const glm::dquat quaternion = n.empty() ? glm::dquat(0, 0, 0, 0) : glm::dquat(n[0], n[1], n[2], n[3]);
+  const double length = glm::length(quaternion);
+  if (!std::isfinite(length) || length < 1e-6)
+    throwBadValue(option, value, "principal, x, y, z or a quaternion W,X,Y,Z that is not zero");
+  return {Orientation::Kind::quaternion, 2, quaternion / length};
+}
+
+void parseAltloc(std::string_view option, std::string_view value, StructureOptions& options) {
+  const std::string word = folded(value);
+  if (word == "first") {
+    options.altlocs = Altlocs::first;
+  } else if (word == "all") {
+    options.altlocs = Altlocs::all;
+  } else if (value.size() == 1 && value[0] > ' ' && value[0] < '\x7f') {
+    options.altlocs = Altlocs::named;
+    options.altloc = value[0];
+  } else {
+    throwBadValue(option, value, "first, all or the letter of a location, for example A");
+  }
+}
+
+void parseModel(std::string_view option, std::string_view value, StructureOptions& options) {
+  options.allModels = folded(value) == "all";
+  options.model.reset();
+  if (options.allModels) return;
+  options.model = numberFrom<int>(value);
+  if (!options.model) throwBadValue(option, value, "a model number of the file or all");
+}
+
+std::size_t parseWord(std::string_view option, std::string_view value,
+                      std::span<const std::string_view> words) {
+  const auto found = std::find(words.begin(), words.end(), folded(value));
+  if (found == words.end())
+    throwBadValue(option, value,
+                  fmt::format("{} or {}", fmt::join(words.first(words.size() - 1), ", "), words.back()));
+  return static_cast<std::size_t>(found - words.begin());
+}
+
+}  // namespace meniscus

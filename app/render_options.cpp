@@ -1,0 +1,234 @@
+#include "app/render_options.h"
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <memory>
+
+#include "app/command_line.h"
+#include "core/error.h"
+#include "core/render_settings.h"
+#include "io/image_writer.h"
+#include "io/output_file.h"
+
+namespace meniscus {
+namespace {
+
+constexpr const char* kDescription =
+    "Draws structure files (PDB, mmCIF, plain or .gz) as pictures. Needs no display and no GPU.\n";
+
+constexpr const char* kExamples =
+    "  meniscus render 1crn.pdb -o crambin.png\n"
+    "  meniscus render 4hhb.cif.gz -o heme.png --representation ball_and_stick \\\n"
+    "      --carbons chain --focus '(HEM)' --size 1920x1080 --background transparent\n"
+    "  meniscus render models/*.pdb -o 'pictures/{stem}-{model}.png' --model all --color rainbow\n";
+
+constexpr std::array<std::string_view, 7> kNotForThePicture{"output",  "stats",      "explain", "quiet",
+                                                            "backend", "shader-dir", "help"};
+
+std::string shellQuoted(const std::string& text) {
+  const auto plain = [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+           std::string_view("_-+=.,:/@%").find(c) != std::string_view::npos;
+  };
+  if (!text.empty() && std::all_of(text.begin(), text.end(), plain)) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+  return quoted + "'";
+}
+
+/// Adds the options of a group to a parser; each hands its text to a function of its own.
+class OptionGroup {
+ public:
+  OptionGroup(CLI::App& app, std::string title) : app_(app), title_(std::move(title)) {}
+
+  using Setter = std::function<void(const std::string& option, const std::string& value)>;
+
+  void value(const std::string& names, const std::string& form, const std::string& help, Setter set) {
+    const std::string option = longName(names);
+    app_.add_option_function<std::string>(
+            names, [option, set](const std::string& text) { set(option, text); }, help)
+        ->type_name(form)
+        ->group(title_)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+  }
+  void flag(const std::string& names, const std::string& help, bool& target) {
+    app_.add_flag(names, target, help)->group(title_)->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+  }
+
+ private:
+  static std::string longName(const std::string& names) {
+    const std::size_t start = names.find("--");
+    return names.substr(start, names.find(',', start) - start);
+  }
+
+  CLI::App& app_;
+  std::string title_;
+};
+
+void addOutputOptions(CLI::App& app, RenderOptions& o) {
+  OptionGroup group(app, "Picture");
+  group.value("-o,--output", "OUT",
+              "Name of the picture, .png or .exr. {stem} stands for the\n"
+              "input's name, {model} for the model's number",
+              [&o](auto&, auto& v) { o.output = v; });
+  group.value("--size", "WxH", "Pixels, or one number for a square [1024x768]",
+              [&o](auto& n, auto& v) { o.size = parseSize(n, v); });
+  group.value("--background", "COLOR", "white, black, transparent or '#RRGGBB' [white]",
+              [&o](auto& n, auto& v) { o.background = parseBackground(n, v); });
+  group.value("--samples", "N", "Rays per pixel, 1 to 256: more gives smoother edges [16]",
+              [&o](auto& n, auto& v) { o.samples = parseInteger(n, v, 1, kMaxSamples); });
+  group.value("--depth", "8|16", "Bits per channel of a PNG [8]; EXR has half floats",
+              [&o](auto& n, auto& v) {
+                o.bitDepth = parseChoice<int>(n, v, {{"8", 8}, {"16", 16}});
+              });
+  group.value("--dpi", "N", "Printing resolution recorded in the file, pixels per inch",
+              [&o](auto& n, auto& v) { o.dpi = parseNumber(n, v, 1, 100000, "pixels per inch"); });
+}
+
+void addLookOptions(CLI::App& app, RenderOptions& o) {
+  OptionGroup group(app, "Look");
+  group.value("--representation", "NAME",
+              "spacefill (van der Waals spheres), ball_and_stick or\n"
+              "licorice [spacefill: it shows any molecule, of any size]",
+              [&o](auto& n, auto& v) {
+                o.representation =
+                    parseChoice<Representation>(n, v,
+                                                {{"spacefill", Representation::spacefill},
+                                                 {"ball_and_stick", Representation::ballAndStick},
+                                                 {"licorice", Representation::licorice}});
+              });
+  group.value("--color,--colour", "SCHEME",
+              "element (Jmol), chain, residue (chemical kind), bfactor,\n"
+              "plddt (AlphaFold's 90/70/50), rainbow (along each chain)\nor one colour '#RRGGBB' [element]",
+              [&o](auto& n, auto& v) {
+                const bool carbonsByChain = o.coloring.carbonsByChain;
+                o.coloring = parseColoring(n, v);
+                o.coloring.carbonsByChain = carbonsByChain;
+              });
+  group.value("--carbons", "element|chain", "Colour of carbons when colouring by element [element]",
+              [&o](auto& n, auto& v) {
+                o.coloring.carbonsByChain = parseChoice<bool>(n, v, {{"element", false}, {"chain", true}});
+              });
+  group.value("--radii", "bondi|alvarez",
+              "van der Waals radii: Bondi 1964 (doi 10.1021/j100785a001)\n"
+              "or Alvarez 2013 (doi 10.1039/c3dt50599e) [bondi]",
+              [&o](auto& n, auto& v) {
+                o.radii = parseChoice<RadiusSet>(
+                    n, v, {{"bondi", RadiusSet::bondi}, {"alvarez", RadiusSet::alvarez}});
+              });
+  group.value("--ball-scale", "F", "Radius of a ball as a share of the atom's [0.25]",
+              [&o](auto& n, auto& v) { o.ballScale = parseNumber(n, v, 0.01, 10); });
+  group.value("--stick-radius", "R", "Radius of sticks in Angstrom [0.15; licorice 0.25]",
+              [&o](auto& n, auto& v) { o.stickRadius = parseNumber(n, v, 0.001, 100, "Angstrom"); });
+}
+
+void addCameraOptions(CLI::App& app, RenderOptions& o) {
+  OptionGroup group(app, "Camera");
+  group.value("--orient", "HOW",
+              "principal (the flattest side to the viewer), x, y, z (looking\n"
+              "down that axis) or a quaternion W,X,Y,Z [principal]",
+              [&o](auto& n, auto& v) { o.orientation = parseOrientation(n, v); });
+  group.value("--rotate", "X,Y,Z",
+              "Then turn by degrees about the picture's right, up and\n"
+              "towards-you axes, in this order",
+              [&o](auto& n, auto& v) { o.rotationDeg = parseAngles(n, v); });
+  group.value("--zoom", "F", "Magnify about the middle of the picture [1: all is seen]",
+              [&o](auto& n, auto& v) { o.zoom = parseNumber(n, v, 0.001, 1000); });
+  group.value("--focus", "CID", "Fit the picture to these atoms instead of all (as --select)",
+              [&o](auto&, auto& v) { o.focus = v; });
+  group.value("--fov", "DEGREES", "Vertical field of view, 1 to 170 [30]",
+              [&o](auto& n, auto& v) { o.fovYDeg = parseNumber(n, v, 1, 170, "degrees"); });
+  group.flag("--orthographic", "Parallel instead of perspective projection", o.orthographic);
+}
+
+void addStructureOptions(CLI::App& app, RenderOptions& o) {
+  OptionGroup group(app, "Atoms");
+  group.value("--select", "CID",
+              "Draw only these: /model/chain/residues/atom[element], for\n"
+              "example //A/10-20, //*/(HEM), ///CA[C] (gemmi's syntax)",
+              [&o](auto&, auto& v) { o.structure.select = v; });
+  group.value("--model", "N|all",
+              "Model of the file by its number [the first]. With {model} in\n"
+              "OUT, all gives one picture each, seen by one camera",
+              [&o](auto& n, auto& v) { parseModel(n, v, o.structure); });
+  group.value("--assembly", "ID", "Build this biological assembly ('meniscus info' lists them)",
+              [&o](auto&, auto& v) { o.assembly = v; });
+  group.value("--altloc", "WHICH", "Alternate locations: first, all or a letter [first]",
+              [&o](auto& n, auto& v) { parseAltloc(n, v, o.structure); });
+  group.value("--hydrogens", "on|off", "Draw hydrogens [on]", [&o](auto& n, auto& v) {
+    o.structure.hydrogens = parseChoice<bool>(n, v, {{"on", true}, {"off", false}});
+  });
+  group.value("--waters", "on|off|auto", "Draw waters [auto: only if there is nothing else]",
+              [&o](auto& n, auto& v) {
+                o.structure.waters = parseChoice<Waters>(
+                    n, v, {{"on", Waters::on}, {"off", Waters::off}, {"auto", Waters::automatic}});
+              });
+  group.value("--replicate", "NxMxK", "Repeat the molecule on a lattice",
+              [&o](auto& n, auto& v) { o.replicate = parseCopies(n, v); });
+}
+
+void addOtherOptions(CLI::App& app, RenderOptions& o) {
+  OptionGroup group(app, "Other");
+  group.value("--backend", "auto|egl|osmesa", "How to reach OpenGL [auto]; see 'meniscus doctor'",
+              [&o](auto& n, auto& v) {
+                o.backend = parseChoice<Backend>(
+                    n, v, {{"auto", Backend::automatic}, {"egl", Backend::egl}, {"osmesa", Backend::osmesa}});
+              });
+  group.flag("--explain",
+             "Print what was drawn, what was left out and why, and what\n"
+             "it cost, on standard output",
+             o.explain);
+  group.value("--stats", "FILE", "Write the same as JSON", [&o](auto&, auto& v) { o.statsFile = v; });
+  group.value("--shader-dir", "DIR", "Take shaders from a folder instead of the program",
+              [&o](auto&, auto& v) { o.shaderDir = v; });
+  group.flag("-q,--quiet", "No progress and no notes, only errors", o.quiet);
+}
+
+void requireConsistent(const CLI::App& app, RenderOptions& o) {
+  if (o.files.empty())
+    throw UsageError("no input; give a structure file, as in meniscus render FILE -o OUT.png");
+  if (o.output.empty()) throw UsageError("no output; add the picture's name, as in -o picture.png");
+  if (std::filesystem::is_directory(o.output)) requireWritable(o.output);  // says that it is a folder
+  const ImageType type = imageTypeOf(o.output);
+  if (type == ImageType::exr && app.count("--depth") > 0)
+    throw UsageError("--depth: is for PNG; OpenEXR pictures always have 16-bit floats");
+  if (!o.shaderDir.empty() && !std::filesystem::is_directory(o.shaderDir))
+    throw UsageError("--shader-dir: '" + o.shaderDir.string() + "' is not a folder; give a copy of shaders/");
+}
+
+std::string pictureOptionsOf(const CLI::App& app) {
+  std::string text;
+  for (const CLI::Option* option : app.get_options({})) {
+    if (option->count() == 0 || option->get_lnames().empty()) continue;
+    const std::string& name = option->get_lnames().front();
+    if (std::find(kNotForThePicture.begin(), kNotForThePicture.end(), name) != kNotForThePicture.end())
+      continue;
+    text += " --" + name;
+    if (option->get_items_expected_max() > 0) text += " " + shellQuoted(option->results().back());
+  }
+  return text;
+}
+
+}  // namespace
+
+std::optional<RenderOptions> parseRenderOptions(const std::vector<std::string>& arguments) {
+  RenderOptions options;
+  options.structure.altlocs = Altlocs::first;
+  options.structure.waters = Waters::automatic;
+
+  const std::unique_ptr<CLI::App> app = makeCommandLine("render", kDescription, kExamples);
+  app->add_option("FILE", options.files, "Structure files; {stem} in OUT gives each its own picture")
+      ->type_name("FILE...");
+  addOutputOptions(*app, options);
+  addLookOptions(*app, options);
+  addCameraOptions(*app, options);
+  addStructureOptions(*app, options);
+  addOtherOptions(*app, options);
+  if (!parseCommandLine(*app, arguments)) return std::nullopt;
+  requireConsistent(*app, options);
+  options.pictureOptions = pictureOptionsOf(*app);
+  return options;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,55 @@
+#pragma once
+// What a run of `meniscus render` did and what it cost: for --stats and --explain.
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/image.h"
+#include "render/render_stats.h"
+
+namespace meniscus {
+
+struct PictureReport {
+  std::string input, output;
+  std::size_t atoms = 0, bonds = 0;  ///< of the models drawn, before copies are placed
+  std::size_t spheres = 0, cylinders = 0;
+};
+
+struct RunReport {
+  std::string backend, renderer;  ///< empty if no context was needed
+  ImageSize size;
+  int samples = 0;
+  std::vector<PictureReport> pictures;
+  std::vector<std::string> failures;  ///< one line each
+  /// Wall time [s]; compiling, drawing and reading back are timed by the renderer.
+  double parseSeconds = 0, bondsSeconds = 0, primitivesSeconds = 0, contextSeconds = 0, encodeSeconds = 0,
+         totalSeconds = 0;
+  double cpuSeconds = 0;              ///< of the process, all threads
+  std::uint64_t peakMemoryBytes = 0;  ///< largest resident size
+  RenderStats render;
+};
+
+/// Adds the time it lives to `seconds`.
+class Timed {
+ public:
+  explicit Timed(double& seconds) : seconds_(seconds) {}
+  ~Timed() { seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
+  Timed(const Timed&) = delete;
+  Timed& operator=(const Timed&) = delete;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  double& seconds_;
+  Clock::time_point start_ = Clock::now();
+};
+
+/// Fills in totalSeconds, cpuSeconds and peakMemoryBytes from the process as it is now.
+void addProcessUsage(RunReport& report);
+
+std::string statsAsJson(const RunReport& report);
+std::string explanationOf(const RunReport& report);
+
+}  // namespace meniscus

@@ -1,0 +1,21 @@
+# Everything that is not ours. scripts/install-dependencies names the Debian package of each.
+find_package(ZLIB REQUIRED)       # zlib1g-dev: .gz input (through gemmi), PNG
+find_package(PNG REQUIRED)        # libpng-dev
+find_package(OpenEXR CONFIG REQUIRED)  # libopenexr-dev
+find_package(fmt REQUIRED)        # libfmt-dev
+find_package(nlohmann_json REQUIRED)   # nlohmann-json3-dev
+find_package(CLI11 REQUIRED)      # libcli11-dev
+
+find_path(GEMMI_INCLUDE_DIR gemmi/mmread.hpp REQUIRED)  # gemmi-dev: header only in 0.5
+find_path(PEGTL_INCLUDE_DIR tao/pegtl.hpp REQUIRED)  # tao-pegtl-dev: gemmi/cif.hpp includes it
+add_library(meniscus_gemmi INTERFACE)
+target_include_directories(meniscus_gemmi SYSTEM INTERFACE ${GEMMI_INCLUDE_DIR})
+target_link_libraries(meniscus_gemmi INTERFACE ZLIB::ZLIB)
+
+find_path(GLM_INCLUDE_DIR glm/glm.hpp REQUIRED)
+add_library(meniscus_glm INTERFACE)
+target_include_directories(meniscus_glm SYSTEM INTERFACE ${GLM_INCLUDE_DIR})
+
+# python3-glad; /usr/bin/python3 because the first python3 on the PATH may not be the one that has Debian's modules.
+find_program(GLAD_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH REQUIRED)
+find_path(EGL_INCLUDE_DIR EGL/egl.h REQUIRED)  # libegl-dev: declarations only, the library is opened at run time

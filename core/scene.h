@@ -1,0 +1,72 @@
+#pragma once
+// What is to be seen: molecules and how they are drawn, light, background, camera. No GPU objects, no
+// window state, no files.
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <vector>
+
+#include "core/assembly.h"
+#include "core/elements.h"
+#include "core/molecule.h"
+#include "core/view.h"
+
+namespace meniscus {
+
+using Rgb = std::uint32_t;  ///< 0xRRGGBB, sRGB
+
+enum class Representation : std::uint8_t {
+  spacefill,     ///< van der Waals spheres
+  ballAndStick,  ///< small spheres and thin cylinders
+  licorice       ///< cylinders with rounded ends
+};
+
+enum class ColorScheme : std::uint8_t { element, chain, residue, bFactor, plddt, rainbow, uniform };
+
+struct Coloring {
+  ColorScheme scheme = ColorScheme::element;
+  Rgb uniform = 0xCCCCCC;       ///< for ColorScheme::uniform
+  bool carbonsByChain = false;  ///< with element: carbons take their chain's colour
+};
+
+/// One molecule, in one representation, at one or more places.
+struct SceneObject {
+  std::shared_ptr<const Molecule> molecule;
+  std::vector<Placement> placements;  ///< see placeOnce, placeAssembly, replicate
+  Representation representation = Representation::spacefill;
+  Coloring coloring;
+  RadiusSet radii = RadiusSet::bondi;
+  double ballScale = 0.25;     ///< ball radius as a share of the van der Waals radius (ball and stick)
+  double stickRadius = 0.15;   ///< cylinder radius [Å], ball and stick
+  double licoriceRadius = 0.25;  ///< cylinder and sphere radius [Å], licorice
+};
+
+/// Light from infinity, fixed to the viewer.
+struct DirectionalLight {
+  glm::dvec3 direction{0, 0, -1};  ///< the way the light travels, view space; need not be unit length
+  double intensity = 0;
+};
+
+/// Key, fill and ambient light, and the highlight of the key light (Blinn-Phong), in linear light.
+struct Lighting {
+  DirectionalLight key{{0.5, -0.65, -0.8}, 0.85};
+  DirectionalLight fill{{-0.6, 0.2, -0.75}, 0.25};
+  double ambient = 0.22;
+  double specular = 0.12;
+  double shininess = 48;
+};
+
+struct Background {
+  Rgb color = 0xFFFFFF;
+  bool transparent = false;
+};
+
+struct Scene {
+  std::vector<SceneObject> objects;
+  Lighting lighting;
+  Background background;
+  Camera camera;
+};
+
+}  // namespace meniscus

@@ -1,0 +1,31 @@
+#pragma once
+// What mmCIF says besides the atoms. Takes gemmi's document, so it is for readers in this folder only.
+
+#include <gemmi/cifdoc.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/molecule.h"
+#include "io/assembly_records.h"
+#include "io/connections.h"
+#include "io/oddities.h"
+
+namespace meniscus {
+
+/// _struct_conn without hydrogen bonds, salt bridges and bonds to symmetry mates. Addresses use label ids if `labelIds`.
+std::vector<NamedBond> readConnections(gemmi::cif::Block& block, bool labelIds);
+
+/// _pdbx_struct_assembly_gen with its operators; chains are label_asym_ids.
+std::vector<AssemblyRecord> readAssemblies(gemmi::cif::Block& block, Oddities& oddities);
+
+/// _cell, if it is a real one.
+std::optional<UnitCell> readCell(gemmi::cif::Block& block);
+
+/// Is it a computed model by its categories, its id or its software?
+bool saysPredicted(gemmi::cif::Block& block);
+
+/// sing, doub, trip, arom, delo in any case and length; 1 for anything else.
+std::uint8_t bondOrder(std::string_view word);
+
+}  // namespace meniscus

@@ -1,0 +1,119 @@
+#pragma once
+// Passes with declared reads and writes. Callers say what they want; what does not lead there is left out, and
+// textures live from their first use to their last. The graph knows no effect and never reorders.
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "render/gl/objects.h"
+#include "render/render_stats.h"
+
+namespace meniscus {
+
+/// Textures and framebuffers that outlive a frame, so that the next one allocates nothing.
+class TexturePool {
+ public:
+  /// A texture of exactly this description that is not in use. The name is for the statistics.
+  gl::Texture* acquire(const std::string& name, const gl::TextureDesc& desc);
+  void release(gl::Texture* texture);
+  /// Framebuffer with these colour attachments (index = location, nullptr = none) and depth (or nullptr).
+  unsigned framebuffer(const std::vector<const gl::Texture*>& colors, const gl::Texture* depth);
+  std::vector<ResourceStats> textures() const;
+  /// Deletes what is not in use.
+  void trim();
+
+ private:
+  struct Entry {
+    std::unique_ptr<gl::Texture> texture;
+    std::string name;
+    bool used = false;
+  };
+  std::vector<Entry> entries_;
+  std::map<std::vector<unsigned>, gl::Object> framebuffers_;
+};
+
+/// Handle of a texture in one graph.
+struct TextureRef {
+  int index = -1;
+  bool valid() const { return index >= 0; }
+};
+
+/// Initial contents of a texture, where a graph's first pass writes to it.
+enum class Clear : std::uint8_t { zero, infinity, none };
+
+class FrameGraph;
+
+/// What a pass sees while it runs: its framebuffer is bound, its viewport set.
+class PassContext {
+ public:
+  const gl::Texture& texture(TextureRef ref) const;
+  /// Whether anybody wants this texture; if not it does not exist.
+  bool isLive(TextureRef ref) const;
+
+ private:
+  friend class FrameGraph;
+  explicit PassContext(const FrameGraph& graph) : graph_(graph) {}
+  const FrameGraph& graph_;
+};
+
+class FrameGraph {
+ public:
+  static constexpr int kDepth = -1;
+  struct Attachment {
+    TextureRef texture;
+    int location;  ///< fragment output location, or kDepth
+  };
+
+  explicit FrameGraph(TexturePool& pool) : pool_(pool) {}
+
+  TextureRef create(std::string name, const gl::TextureDesc& desc, Clear clear = Clear::zero);
+  /// A texture of somebody else's; it must outlive execute().
+  TextureRef import(std::string name, const gl::Texture& texture, Clear clear);
+  /// All attachments of a pass have the same size. A pass that tests depth names it among its reads, too.
+  void addPass(std::string name, std::vector<TextureRef> reads, std::vector<Attachment> writes,
+               std::function<void(const PassContext&)> execute);
+  /// Notes for --explain that something was not even added.
+  void leaveOut(std::string what, std::string reason) { omissions_.push_back({std::move(what), std::move(reason)}); }
+
+  void want(TextureRef ref);
+  /// Runs what leads to the wanted textures. Wanted textures that the graph created stay readable through
+  /// texture() until the graph is destroyed. Adds to stats.passes (times if `timed`) and stats.omissions.
+  void execute(RenderStats& stats, bool timed);
+  const gl::Texture& texture(TextureRef ref) const;
+  ~FrameGraph();
+  FrameGraph(const FrameGraph&) = delete;
+  FrameGraph& operator=(const FrameGraph&) = delete;
+
+ private:
+  friend class PassContext;
+  struct Resource {
+    std::string name;
+    gl::TextureDesc desc;
+    Clear clear = Clear::zero;
+    const gl::Texture* imported = nullptr;
+    gl::Texture* pooled = nullptr;
+    bool wanted = false, live = false, written = false;
+    int lastUse = -1;
+  };
+  struct Pass {
+    std::string name;
+    std::vector<TextureRef> reads;
+    std::vector<Attachment> writes;
+    std::function<void(const PassContext&)> execute;
+    bool live = false;
+  };
+  void cull();
+  void run(Pass& pass);
+  void materialize(Resource& resource);
+  void clearAttachment(unsigned framebuffer, Resource& resource, int location);
+
+  TexturePool& pool_;
+  std::vector<Resource> resources_;
+  std::vector<Pass> passes_;
+  std::vector<OmissionStats> omissions_;
+};
+
+}  // namespace meniscus

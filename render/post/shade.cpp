@@ -1,0 +1,58 @@
+#include "render/post/shade.h"
+
+#include <glad/gl.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec4.hpp>
+
+#include "render/post/fullscreen.h"
+
+namespace meniscus {
+
+namespace {
+
+// Layout of ShadeUniforms in shaders/post/shade.frag.
+struct ShadeBlock {
+  glm::vec4 key, fill, ambient, backdrop;
+};
+
+glm::vec4 towardsLight(const DirectionalLight& light) {
+  const double length = glm::length(light.direction);
+  const glm::dvec3 towards = length > 0 ? -light.direction / length : glm::dvec3(0, 0, 1);
+  return glm::vec4(glm::dvec4(towards, light.intensity));
+}
+
+double linearFromSrgb(double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); }
+
+}  // namespace
+
+glm::vec4 backdrop(const Background& background) {
+  if (background.transparent) return glm::vec4(0.0f);
+  const auto channel = [&](int shift) { return linearFromSrgb(((background.color >> shift) & 0xFF) / 255.0); };
+  return glm::vec4(glm::dvec4(channel(16), channel(8), channel(0), 1.0));
+}
+
+void ShadeUniforms::set(const ShadeSettings& settings) {
+  if (!buffer_.object) buffer_ = gl::Buffer::updatable(sizeof(ShadeBlock));
+  const Lighting& l = settings.lighting;
+  const ShadeBlock block{towardsLight(l.key), towardsLight(l.fill),
+                         glm::vec4(glm::dvec4(l.ambient, l.specular, l.shininess, 0.0)), backdrop(settings.background)};
+  buffer_.update(&block);
+}
+
+void addShade(FrameGraph& graph, const ShadeSettings& settings, const ShadeUniforms& uniforms, ShaderLibrary& shaders,
+              const GBufferRefs& gbuffer, TextureRef target) {
+  graph.addPass("shade", {gbuffer.albedo, gbuffer.normal}, {{target, 0}},
+                [settings, &uniforms, &shaders, gbuffer](const PassContext& context) {
+                  ShaderFlags flags;
+                  if (settings.final) flags.insert("FINAL");
+                  if (settings.final && settings.encodeSrgb) flags.insert("ENCODE_SRGB");
+                  glBindTextureUnit(0, context.texture(gbuffer.albedo).object.name());
+                  glBindTextureUnit(1, context.texture(gbuffer.normal).object.name());
+                  glBindBufferBase(GL_UNIFORM_BUFFER, 1, uniforms.name());
+                  drawFullscreen(shaders.program("post/fullscreen.vert", "post/shade.frag", flags), !settings.final);
+                });
+}
+
+}  // namespace meniscus

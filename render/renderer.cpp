@@ -1,0 +1,231 @@
+#include "render/renderer.h"
+
+#include <glad/gl.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "core/error.h"
+#include "core/sampling.h"
+#include "render/gbuffer.h"
+#include "render/post/resolve.h"
+#include "render/post/shade.h"
+#include "render/quadrics.h"
+#include "render/view_block.h"
+
+namespace meniscus {
+
+namespace {
+
+// A tile's G-buffer, sum and picture take about 40 bytes a pixel: at most 320 MiB.
+constexpr std::int64_t kTilePixels = std::int64_t{8} << 20;
+// Finished rows wait for the ones beside them: at most 128 MiB, unless one row alone is larger.
+constexpr std::int64_t kBandBytes = std::int64_t{128} << 20;
+
+gl::TextureFormat textureFormat(PixelFormat format) {
+  switch (format) {
+    case PixelFormat::rgba8: return gl::TextureFormat::rgba8;
+    case PixelFormat::rgba16: return gl::TextureFormat::rgba16;
+    case PixelFormat::rgbaFloat: return gl::TextureFormat::rgba32f;
+  }
+  return gl::TextureFormat::rgba8;
+}
+
+struct TileSize {
+  int width, height;
+};
+
+TileSize chooseTileSize(ImageSize picture, int bytesPerRowPixel, int maxTileSize) {
+  const gl::Limits limits = gl::queryLimits();
+  int side = std::min({limits.textureSize, limits.viewportWidth, limits.viewportHeight});
+  if (maxTileSize > 0) side = std::min(side, maxTileSize);
+  const int width = std::min(picture.width, side);
+  const std::int64_t rows = std::min(kTilePixels / width,
+                                     kBandBytes / (static_cast<std::int64_t>(picture.width) * bytesPerRowPixel));
+  return {width, static_cast<int>(std::clamp<std::int64_t>(rows, 1, std::min(picture.height, side)))};
+}
+
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& sum) : sum_(sum) {}
+  ~Stopwatch() {
+    sum_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
+  }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  double& sum_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+struct Renderer::Impl {
+  RendererOptions options;
+  ShaderLibrary shaders;
+  TexturePool pool;
+  QuadricBuffers quadrics;
+  ShadeUniforms shadeUniforms;
+  gl::Buffer viewUniforms;
+  std::shared_ptr<const Primitives> primitives = std::make_shared<Primitives>();
+  RenderStats stats;
+
+  explicit Impl(const RendererOptions& o) : options(o), shaders(o.shaderDir) {
+    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    glDisable(GL_DITHER);
+    glDisable(GL_MULTISAMPLE);
+  }
+
+  void prepare() {
+    if (!options.shaderDir.empty()) shaders.reloadIfChanged();
+    Stopwatch watch(stats.uploadMs);
+    quadrics.upload(*primitives);
+    if (!viewUniforms.object) viewUniforms = gl::Buffer::updatable(sizeof(f32::ViewBlock));
+  }
+
+  void setView(const View& view, const Tile& tile, glm::vec2 sampleShift) {
+    const f32::ViewBlock block = makeViewBlock(view, primitives->origin, tile, sampleShift);
+    viewUniforms.update(&block);
+    glBindBufferBase(GL_UNIFORM_BUFFER, 0, viewUniforms.object.name());
+  }
+
+  // One sample of one tile: every pass of the program is named here.
+  void buildFrame(FrameGraph& graph, const ShadeSettings& shade, const Tile& tile, TextureRef target) {
+    const GBufferRefs gbuffer = createGBuffer(graph, tile.width, tile.height);
+    addQuadrics(graph, quadrics, shaders, gbuffer);
+    addShade(graph, shade, shadeUniforms, shaders, gbuffer, target);
+    graph.want(target);
+  }
+
+  void drawTile(const View& view, const Tile& tile, ShadeSettings shade, int samples, const gl::Texture& picture);
+  void execute(FrameGraph& graph) { graph.execute(stats, options.timePasses); }
+};
+
+Renderer::Renderer(const RendererOptions& options) : impl_(std::make_unique<Impl>(options)) {}
+Renderer::~Renderer() = default;
+
+void Renderer::setPrimitives(std::shared_ptr<const Primitives> primitives) {
+  impl_->primitives = std::move(primitives);
+  impl_->quadrics.clear();
+  impl_->pool.trim();
+}
+
+void Renderer::Impl::drawTile(const View& view, const Tile& tile, ShadeSettings shade, int samples,
+                              const gl::Texture& picture) {
+  shade.final = samples == 1;
+  shadeUniforms.set(shade);
+  if (shade.final) {
+    setView(view, tile, {0, 0});
+    FrameGraph graph(pool);
+    graph.leaveOut("pass resolve", "one sample per pixel");
+    buildFrame(graph, shade, tile, graph.import("picture", picture, Clear::none));
+    execute(graph);
+    return;
+  }
+  gl::Texture* sum = pool.acquire("sum", {gl::TextureFormat::rgba32f, tile.width, tile.height});
+  for (int i = 0; i < samples; ++i) {
+    setView(view, tile, sampleOffset(i, samples));
+    FrameGraph graph(pool);
+    buildFrame(graph, shade, tile, graph.import("sum", *sum, i == 0 ? Clear::zero : Clear::none));
+    execute(graph);
+  }
+  FrameGraph graph(pool);
+  const TextureRef target = graph.import("picture", picture, Clear::none);
+  addResolve(graph, {samples, backdrop(shade.background), shade.encodeSrgb}, shaders,
+             graph.import("sum", *sum, Clear::none), target);
+  graph.want(target);
+  execute(graph);
+  pool.release(sum);
+}
+
+void Renderer::renderPicture(const View& view, const Lighting& lighting, const Background& background,
+                             const RenderSettings& settings, PixelFormat format, RowSink& sink,
+                             const std::function<void(double)>& progress) {
+  MENISCUS_CHECK(view.size.width > 0 && view.size.height > 0);
+  MENISCUS_CHECK(settings.samples >= 1 && settings.samples <= kMaxSamples);
+  Impl& r = *impl_;
+  r.prepare();
+  ShadeSettings shade{lighting, background, false, format != PixelFormat::rgbaFloat};
+
+  const std::size_t pixelBytes = bytesPerPixel(format);
+  const std::size_t rowBytes = pixelBytes * static_cast<std::size_t>(view.size.width);
+  const TileSize tileSize = chooseTileSize(view.size, static_cast<int>(pixelBytes), r.options.maxTileSize);
+  std::vector<std::byte> band;
+  for (int top = view.size.height; top > 0; top -= tileSize.height) {
+    const int height = std::min(tileSize.height, top);
+    band.resize(rowBytes * static_cast<std::size_t>(height));
+    for (int x = 0; x < view.size.width; x += tileSize.width) {
+      const Tile tile{x, top - height, std::min(tileSize.width, view.size.width - x), height};
+      gl::Texture* picture = r.pool.acquire("picture", {textureFormat(format), tile.width, tile.height});
+      {
+        Stopwatch watch(r.stats.drawMs);
+        r.drawTile(view, tile, shade, settings.samples, *picture);
+        glFinish();
+      }
+      Stopwatch watch(r.stats.readbackMs);
+      picture->read(tile.width, tile.height, view.size.width, band.data() + pixelBytes * static_cast<std::size_t>(x));
+      r.pool.release(picture);
+      ++r.stats.tiles;
+    }
+    for (int y = height; y-- > 0;) {
+      sink.writeRows(std::span(band).subspan(rowBytes * static_cast<std::size_t>(y), rowBytes));
+    }
+    if (progress) progress(static_cast<double>(view.size.height - top + height) / view.size.height);
+  }
+}
+
+HitImage Renderer::renderHits(const View& view, HitChannels channels) {
+  Impl& r = *impl_;
+  r.prepare();
+  const int width = view.size.width, height = view.size.height;
+  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  HitImage image;
+  image.size = view.size;
+  std::vector<std::uint16_t> encoded;
+  if (channels.distance) image.distance.resize(pixels);
+  if (channels.id) image.id.resize(pixels);
+  if (channels.normal) encoded.resize(2 * pixels);
+
+  const TileSize tileSize = chooseTileSize(view.size, 16, r.options.maxTileSize);
+  for (int y = 0; y < height; y += tileSize.height) {
+    for (int x = 0; x < width; x += tileSize.width) {
+      const Tile tile{x, y, std::min(tileSize.width, width - x), std::min(tileSize.height, height - y)};
+      r.setView(view, tile, {0, 0});
+      FrameGraph graph(r.pool);
+      const GBufferRefs gbuffer = createGBuffer(graph, tile.width, tile.height);
+      addQuadrics(graph, r.quadrics, r.shaders, gbuffer);
+      graph.leaveOut("pass shade", "no colour is wanted");
+      const auto fetch = [&](TextureRef ref, auto* out, std::size_t perPixel) {
+        const std::size_t first = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                                  static_cast<std::size_t>(x);
+        graph.texture(ref).read(tile.width, tile.height, width, out + perPixel * first);
+      };
+      if (channels.distance) graph.want(gbuffer.distance);
+      if (channels.normal) graph.want(gbuffer.normal);
+      if (channels.id) graph.want(gbuffer.id);
+      r.execute(graph);
+      if (channels.distance) fetch(gbuffer.distance, image.distance.data(), 1);
+      if (channels.normal) fetch(gbuffer.normal, encoded.data(), 2);
+      if (channels.id) fetch(gbuffer.id, image.id.data(), 1);
+      ++r.stats.tiles;
+    }
+  }
+  for (std::size_t i = 0; i < encoded.size(); i += 2) {
+    const bool miss = encoded[i] == 0 && encoded[i + 1] == 0;  // cleared; no normal towards the viewer is stored so
+    image.normal.push_back(miss ? glm::vec3(0.0f)
+                                : f32::decodeNormal(glm::vec2(encoded[i], encoded[i + 1]) / 65535.0f));
+  }
+  return image;
+}
+
+RenderStats Renderer::stats() const {
+  RenderStats stats = impl_->stats;
+  stats.programs = impl_->shaders.compiled();
+  stats.compileMs = impl_->shaders.compileMs();
+  stats.buffers = impl_->quadrics.buffers();
+  stats.textures = impl_->pool.textures();
+  return stats;
+}
+
+}  // namespace meniscus

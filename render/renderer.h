@@ -1,0 +1,53 @@
+#pragma once
+// Draws Primitives as seen from a View. buildFrame() in renderer.cpp reads as the list of passes.
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+
+#include "core/hit_image.h"
+#include "core/image.h"
+#include "core/primitives.h"
+#include "core/render_settings.h"
+#include "core/scene.h"
+#include "core/view.h"
+#include "render/render_stats.h"
+
+namespace meniscus {
+
+struct RendererOptions {
+  std::filesystem::path shaderDir;  ///< read shaders from here instead of those in the binary; empty = binary
+  bool timePasses = false;          ///< waits for the GPU after every pass to know its time
+  int maxTileSize = 0;              ///< largest side of what is drawn at once [pixels]; 0 = what the driver allows
+};
+
+/// Channels of a HitImage that are wanted.
+struct HitChannels {
+  bool distance = true, normal = false, id = true;
+};
+
+/// Needs a current OpenGL 4.5 core context for its whole life.
+class Renderer {
+ public:
+  explicit Renderer(const RendererOptions& options = {});
+  ~Renderer();
+
+  /// What to draw from now on. Uploads only when a frame needs it.
+  void setPrimitives(std::shared_ptr<const Primitives> primitives);
+
+  /// Draws a picture of view.size and hands its rows to `sink` from the top. `progress` gets the finished share 0..1.
+  void renderPicture(const View& view, const Lighting& lighting, const Background& background,
+                     const RenderSettings& settings, PixelFormat format, RowSink& sink,
+                     const std::function<void(double)>& progress = {});
+
+  /// Draws what the rays through the pixels' centres meet: no shading, nothing that was not asked for.
+  HitImage renderHits(const View& view, HitChannels channels);
+
+  RenderStats stats() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace meniscus

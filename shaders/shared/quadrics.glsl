@@ -1,0 +1,88 @@
+// Where a ray meets a sphere or a capped cylinder, everything relative to the primitive's own centre.
+// Sigg et al., GPU-Based Ray-Casting of Quadratic Surfaces, PBG 2006, §3.3, with the intersection in eye space
+// instead of their eq. (7), which cancels for small, far quadrics: the discriminant is r^2 - |closest approach|^2
+// (Haines, Günther, Akenine-Möller, Ray Tracing Gems 2019, ch. 7, doi 10.1007/978-1-4842-4427-2_7).
+
+// The part of a ray inside a convex solid: parameters measured from the given ray point, normals outward.
+struct Chord {
+  bool hit;
+  vec3 entry;  // relative to the centre
+  vec3 exit;
+  vec3 entryNormal;  // unit
+  vec3 exitNormal;
+};
+
+FN Chord missedChord() {
+  Chord c;
+  c.hit = false;
+  c.entry = vec3(real(0), real(0), real(0));
+  c.exit = c.entry;
+  c.entryNormal = c.entry;
+  c.exitNormal = c.entry;
+  return c;
+}
+
+// point: of the ray, relative to the sphere's centre; direction: unit. Tangent rays hit.
+FN Chord sphereChord(vec3 point, vec3 direction, real radius) {
+  vec3 nearest = point - dot(point, direction) * direction;
+  nearest = nearest - dot(nearest, direction) * direction;  // once more: point may be many radii away
+  real discriminant = radius * radius - dot(nearest, nearest);
+  if (!(discriminant >= real(0))) return missedChord();
+  vec3 halfChord = sqrt(discriminant) * direction;
+  Chord c;
+  c.hit = true;
+  c.entry = nearest - halfChord;
+  c.exit = nearest + halfChord;
+  c.entryNormal = c.entry / radius;
+  c.exitNormal = c.exit / radius;
+  return c;
+}
+
+// Solid cylinder |along axis| <= halfLength, distance from the axis <= radius. axis: unit; any ray point.
+FN Chord cylinderChord(vec3 point, vec3 direction, vec3 axis, real halfLength, real radius) {
+  // In the plane perpendicular to the axis the ray is a line (or a point); `moment` is perpendicular to both.
+  vec3 moment = cross(direction, axis);
+  real slope2 = dot(moment, moment);  // sin^2 of the angle between ray and axis
+  real along = dot(direction, axis);
+  real height = dot(point, axis);
+  vec3 aside = point - height * axis;
+
+  real sideIn;
+  real sideOut;
+  if (slope2 > real(PARALLEL_LIMIT)) {
+    vec3 crossing = direction - along * axis;
+    real middle = -dot(aside, crossing) / slope2;
+    real offset = dot(aside, moment);
+    real discriminant = radius * radius - offset * offset / slope2;
+    if (!(discriminant >= real(0))) return missedChord();
+    real halfWidth = sqrt(discriminant / slope2);
+    sideIn = middle - halfWidth;
+    sideOut = middle + halfWidth;
+  } else {
+    if (dot(aside, aside) > radius * radius) return missedChord();
+    sideIn = real(-LARGEST);
+    sideOut = real(LARGEST);
+  }
+
+  real capIn = real(-LARGEST);
+  real capOut = real(LARGEST);
+  if (abs(along) > real(PARALLEL_LIMIT)) {
+    real sign_ = along > real(0) ? real(1) : real(-1);
+    capIn = (-height - sign_ * halfLength) / along;
+    capOut = (-height + sign_ * halfLength) / along;
+  } else if (abs(height) > halfLength) {
+    return missedChord();
+  }
+
+  real tIn = max(sideIn, capIn);
+  real tOut = min(sideOut, capOut);
+  if (!(tIn <= tOut)) return missedChord();
+  Chord c;
+  c.hit = true;
+  c.entry = point + tIn * direction;
+  c.exit = point + tOut * direction;
+  vec3 capNormal = along > real(0) ? axis : -axis;
+  c.entryNormal = capIn > sideIn ? -capNormal : (c.entry - dot(c.entry, axis) * axis) / radius;
+  c.exitNormal = capOut < sideOut ? capNormal : (c.exit - dot(c.exit, axis) * axis) / radius;
+  return c;
+}
