@@ -13,7 +13,7 @@
 namespace meniscus {
 namespace {
 
-constexpr double kLatticeGap = 4.0;              // Å between the boxes of neighbouring copies
+constexpr double kLatticeGap = 4.0;                  // Å between the boxes of neighbouring copies
 constexpr std::size_t kMaxPlacements = 100'000'000;  // 17 GB of placements; more is a typing error
 
 struct Box {
@@ -63,10 +63,10 @@ std::vector<Placement> placeAssembly(const Molecule& molecule, const std::string
     }
     return placements;
   }
-  throw UsageError(molecule.assemblies.empty()
-                       ? fmt::format("{} describes no biological assemblies: leave out --assembly", molecule.name)
-                       : fmt::format("{} has no assembly '{}': choose one of {}", molecule.name, id,
-                                     listIds(molecule)));
+  throw UsageError(
+      molecule.assemblies.empty()
+          ? fmt::format("{} describes no biological assemblies: leave out --assembly", molecule.name)
+          : fmt::format("{} has no assembly '{}': choose one of {}", molecule.name, id, listIds(molecule)));
 }
 
 std::vector<Placement> replicate(const Molecule& molecule, const std::vector<Placement>& placements,
@@ -74,7 +74,8 @@ std::vector<Placement> replicate(const Molecule& molecule, const std::vector<Pla
   if (n.x < 1 || n.y < 1 || n.z < 1) throw UsageError("a lattice needs at least 1x1x1 copies");
   const double copies = static_cast<double>(n.x) * n.y * n.z;
   if (copies * static_cast<double>(placements.size()) > static_cast<double>(kMaxPlacements)) {
-    throw UsageError(fmt::format("a lattice of {}x{}x{} is too large: at most {} copies", n.x, n.y, n.z, kMaxPlacements));
+    throw UsageError(
+        fmt::format("a lattice of {}x{}x{} is too large: at most {} copies", n.x, n.y, n.z, kMaxPlacements));
   }
   const Box box = boxOf(molecule, placements);
   const glm::dvec3 spacing = box.high - box.low + glm::dvec3(kLatticeGap);

@@ -11,8 +11,8 @@ namespace meniscus {
 
 /// One placed copy of a part of a molecule.
 struct Placement {
-  glm::dmat4 transform{1.0};           ///< rigid motion, Å
-  std::vector<IndexRange> residues;    ///< what is copied: ranges into Molecule::residues
+  glm::dmat4 transform{1.0};         ///< rigid motion, Å
+  std::vector<IndexRange> residues;  ///< what is copied: ranges into Molecule::residues
 };
 
 /// The molecule as it stands: one placement of all residues.

@@ -1,7 +1,8 @@
-// Distance rule: the upper bound is the customary one of Open Babel and Jmol, sum of Cordero's covalent radii + 0.45 Å.
-// Metals (ours): donors N, O, F, P, S, Cl, As, Se, Br, I within sum + 0.45 Å, carbon within sum + 0.2 Å (haem CO,
-// cobalamin, metallocenes; not to alkali and alkaline earth metals), another metal within 0.95 of the sum, which keeps
-// metal-metal bonds and leaves the iron atoms of a 4Fe-4S cluster (2.7 Å apart, sum 2.64 Å) to their sulphurs.
+// Distance rule: the upper bound is the customary one of Open Babel and Jmol, sum of Cordero's covalent radii
+// + 0.45 Å. Metals (ours): donors N, O, F, P, S, Cl, As, Se, Br, I within sum + 0.45 Å, carbon within sum +
+// 0.2 Å (haem CO, cobalamin, metallocenes; not to alkali and alkaline earth metals), another metal within
+// 0.95 of the sum, which keeps metal-metal bonds and leaves the iron atoms of a 4Fe-4S cluster (2.7 Å apart,
+// sum 2.64 Å) to their sulphurs.
 #include "core/bonds.h"
 
 #include <fmt/format.h>
@@ -22,31 +23,58 @@
 namespace meniscus {
 namespace {
 
-constexpr double kTolerance = 0.45;          // Å
-constexpr double kShortest = 0.4;            // Å
+constexpr double kTolerance = 0.45;            // Å
+constexpr double kShortest = 0.4;              // Å
 constexpr double kCarbonMetalTolerance = 0.2;  // Å
 constexpr double kMetalMetalFactor = 0.95;
-constexpr double kTemplateStretch = 1.0;  // Å; beyond sum + this a template bond spans a broken or doubled residue
+constexpr double kTemplateStretch =
+    1.0;  // Å; beyond sum + this a template bond spans a broken or doubled residue
 constexpr std::size_t kMaxTemplateAtoms = 512;  // a residue with more is no residue
-constexpr std::size_t kMaxCellAtoms = 256;      // real structures stay below 70 in (3 Å)^3, alternates included
+constexpr std::size_t kMaxCellAtoms = 256;  // real structures stay below 70 in (3 Å)^3, alternates included
 constexpr std::uint8_t kMaxDistanceBonds = 24;  // per atom
 constexpr std::size_t kMaxHeterogeneity = 8;    // residues looked at for a link to the next number
 
 enum AtomFlag : std::uint8_t { hydrogen = 1, metal = 2, water = 4, inTemplate = 8 };
 
-bool altlocsMeet(char a, char b) { return a == b || a == ' ' || b == ' '; }
+bool altlocsMeet(char a, char b) {
+  return a == b || a == ' ' || b == ' ';
+}
 
 bool isDonor(std::uint8_t element) {
   switch (element) {
-    case 7: case 8: case 9: case 15: case 16: case 17: case 33: case 34: case 35: case 53: return true;
-    default: return false;
+    case 7:
+    case 8:
+    case 9:
+    case 15:
+    case 16:
+    case 17:
+    case 33:
+    case 34:
+    case 35:
+    case 53:
+      return true;
+    default:
+      return false;
   }
 }
 
 bool isAlkaline(std::uint8_t element) {
   switch (element) {
-    case 3: case 4: case 11: case 12: case 19: case 20: case 37: case 38: case 55: case 56: case 87: case 88: return true;
-    default: return false;
+    case 3:
+    case 4:
+    case 11:
+    case 12:
+    case 19:
+    case 20:
+    case 37:
+    case 38:
+    case 55:
+    case 56:
+    case 87:
+    case 88:
+      return true;
+    default:
+      return false;
   }
 }
 
@@ -82,7 +110,9 @@ class BondFinder {
   }
 
  private:
-  double distance(std::uint32_t a, std::uint32_t b) const { return glm::distance(m_.positions[a], m_.positions[b]); }
+  double distance(std::uint32_t a, std::uint32_t b) const {
+    return glm::distance(m_.positions[a], m_.positions[b]);
+  }
   void addTemplateBonds(const Residue& residue);
   void addLinks(const Chain& chain);
   void linkAtoms(const Residue& from, std::string_view nameFrom, const Residue& to, std::string_view nameTo);
@@ -175,7 +205,8 @@ double BondFinder::cellSize() const {
   double radius = 0.5;
   for (std::size_t e = 0; e < present_.size(); ++e) {
     const auto element = static_cast<std::uint8_t>(e);
-    if (present_[e] && !isMetal(element)) radius = std::max(radius, static_cast<double>(covalentRadius(element)));
+    if (present_[e] && !isMetal(element))
+      radius = std::max(radius, static_cast<double>(covalentRadius(element)));
   }
   return 2 * radius + kTolerance;
 }
@@ -188,14 +219,24 @@ void BondFinder::addDistanceBonds() {
   for (std::size_t a = 0; a < present_.size(); ++a) {
     for (std::size_t b = 0; present_[a] && b < present_.size(); ++b) {
       if (present_[b]) {
-        longest_[a][b] = static_cast<float>(longestBond(static_cast<std::uint8_t>(a), static_cast<std::uint8_t>(b)));
+        longest_[a][b] =
+            static_cast<float>(longestBond(static_cast<std::uint8_t>(a), static_cast<std::uint8_t>(b)));
       }
     }
   }
   const CellGrid grid(m_.positions, cellSize());
-  static constexpr std::array<std::array<int, 3>, 13> kForward{{{1, 0, 0}, {-1, 1, 0}, {0, 1, 0}, {1, 1, 0},
-                                                                {-1, -1, 1}, {0, -1, 1}, {1, -1, 1}, {-1, 0, 1},
-                                                                {0, 0, 1}, {1, 0, 1}, {-1, 1, 1}, {0, 1, 1},
+  static constexpr std::array<std::array<int, 3>, 13> kForward{{{1, 0, 0},
+                                                                {-1, 1, 0},
+                                                                {0, 1, 0},
+                                                                {1, 1, 0},
+                                                                {-1, -1, 1},
+                                                                {0, -1, 1},
+                                                                {1, -1, 1},
+                                                                {-1, 0, 1},
+                                                                {0, 0, 1},
+                                                                {1, 0, 1},
+                                                                {-1, 1, 1},
+                                                                {0, 1, 1},
                                                                 {1, 1, 1}}};
   std::size_t crowded = 0;
   for (std::size_t cell = 0; cell < grid.cellCount(); ++cell) {
@@ -219,12 +260,14 @@ void BondFinder::addDistanceBonds() {
   }
   addMetalBonds(grid);
   if (crowded > 0) {
-    logger_.note(fmt::format("{} atoms lie on top of each other (over {} in a cube of {:.1f} Å): no bonds by distance there",
-                             crowded, kMaxCellAtoms, grid.size()));
+    logger_.note(fmt::format(
+        "{} atoms lie on top of each other (over {} in a cube of {:.1f} Å): no bonds by distance there",
+        crowded, kMaxCellAtoms, grid.size()));
   }
   if (saturated_) {
-    logger_.note(fmt::format("some atoms have over {} neighbours in bonding distance: only the first are bonded",
-                             kMaxDistanceBonds));
+    logger_.note(
+        fmt::format("some atoms have over {} neighbours in bonding distance: only the first are bonded",
+                    kMaxDistanceBonds));
   }
 }
 
@@ -257,7 +300,8 @@ void BondFinder::tryDistance(std::uint32_t a, std::uint32_t b) {
   const double squared = glm::dot(between, between);
   if (squared > limit * limit || squared < kShortest * kShortest) return;
   const bool sameResidue = m_.residueOf[a] == m_.residueOf[b];
-  if (sameResidue ? (flags_[a] & flags_[b] & inTemplate) != 0 : ((flags_[a] | flags_[b]) & water) != 0) return;
+  if (sameResidue ? (flags_[a] & flags_[b] & inTemplate) != 0 : ((flags_[a] | flags_[b]) & water) != 0)
+    return;
   if (!altlocsMeet(m_.altlocs[a], m_.altlocs[b])) return;
   if (degree_[a] >= kMaxDistanceBonds || degree_[b] >= kMaxDistanceBonds) {
     saturated_ = true;
@@ -293,8 +337,8 @@ void addMissingBonds(Molecule& molecule, Logger& logger) {
 }
 
 std::size_t countBonds(const Molecule& molecule, BondOrigin origin) {
-  return static_cast<std::size_t>(
-      std::count_if(molecule.bonds.begin(), molecule.bonds.end(), [origin](const Bond& b) { return b.origin == origin; }));
+  return static_cast<std::size_t>(std::count_if(molecule.bonds.begin(), molecule.bonds.end(),
+                                                [origin](const Bond& b) { return b.origin == origin; }));
 }
 
 }  // namespace meniscus

@@ -1,9 +1,10 @@
 // Element tables, index = atomic number.
 // Colours: the table of Jmol (jmol.sourceforge.net/jscolors), unknown = its deep pink.
-// Bondi radii: A. Bondi, J. Phys. Chem. 68 (1964) 441, doi 10.1021/j100785a001, with H = 1.20; main-group elements that
-// Bondi lacks from M. Mantina et al., J. Phys. Chem. A 113 (2009) 5806, doi 10.1021/jp8111556, as most programs do.
-// Alvarez radii: S. Alvarez, Dalton Trans. 42 (2013) 8617, doi 10.1039/c3dt50599e, Table 1.
-// Covalent radii: B. Cordero et al., Dalton Trans. (2008) 2832, doi 10.1039/b801115j, Table 2: C sp3; Mn, Fe, Co low spin.
+// Bondi radii: A. Bondi, J. Phys. Chem. 68 (1964) 441, doi 10.1021/j100785a001, with H = 1.20; main-group
+// elements that Bondi lacks from M. Mantina et al., J. Phys. Chem. A 113 (2009) 5806, doi 10.1021/jp8111556,
+// as most programs do. Alvarez radii: S. Alvarez, Dalton Trans. 42 (2013) 8617, doi 10.1039/c3dt50599e,
+// Table 1. Covalent radii: B. Cordero et al., Dalton Trans. (2008) 2832, doi 10.1039/b801115j, Table 2: C
+// sp3; Mn, Fe, Co low spin.
 #include "core/elements.h"
 
 #include <array>
@@ -20,7 +21,7 @@ struct Element {
 };
 
 constexpr float kFallbackVanDerWaals = 2.0f;
-constexpr float kUnknownCovalent = 0.76f;     // an unknown atom is most often a carbon of an unknown ligand
+constexpr float kUnknownCovalent = 0.76f;       // an unknown atom is most often a carbon of an unknown ligand
 constexpr float kTransuraniumCovalent = 1.69f;  // Cordero's last, Cm, for what lies beyond
 
 // clang-format off
@@ -88,9 +89,13 @@ constexpr std::array<Element, kElementCount> kElements{{
 }};
 // clang-format on
 
-const Element& at(std::uint8_t element) { return kElements[element < kElementCount ? element : 0]; }
+const Element& at(std::uint8_t element) {
+  return kElements[element < kElementCount ? element : 0];
+}
 
-char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
+char upper(char c) {
+  return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+}
 
 /// Slot of a symbol of one or two letters in the look-up table, -1 if it is none.
 int slotOf(std::string_view symbol) {
@@ -114,7 +119,9 @@ std::array<std::uint8_t, 26 * 27> makeSymbolTable() {
 
 }  // namespace
 
-std::string_view elementSymbol(std::uint8_t element) { return at(element).symbol; }
+std::string_view elementSymbol(std::uint8_t element) {
+  return at(element).symbol;
+}
 
 std::uint8_t elementFromSymbol(std::string_view symbol) {
   static const std::array<std::uint8_t, 26 * 27> table = makeSymbolTable();
@@ -132,7 +139,9 @@ float covalentRadius(std::uint8_t element) {
   return radius > 0 ? radius : kTransuraniumCovalent;
 }
 
-std::uint32_t elementColor(std::uint8_t element) { return at(element).color; }
+std::uint32_t elementColor(std::uint8_t element) {
+  return at(element).color;
+}
 
 bool isMetal(std::uint8_t element) {
   const int z = element;

@@ -9,7 +9,8 @@ namespace meniscus {
 inline constexpr int kElementCount = 119;  ///< 0 (unknown) to 118 (Og)
 
 enum class RadiusSet : std::uint8_t {
-  bondi,   ///< Bondi 1964 (doi 10.1021/j100785a001), H = 1.20; Mantina 2009 (10.1021/jp8111556) where Bondi is silent
+  bondi,  ///< Bondi 1964 (doi 10.1021/j100785a001), H = 1.20; Mantina 2009 (10.1021/jp8111556) where Bondi is
+          ///< silent
   alvarez  ///< Alvarez 2013 (doi 10.1039/c3dt50599e)
 };
 

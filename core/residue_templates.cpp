@@ -1,4 +1,5 @@
-// Atom names and bond orders as in the wwPDB chemical component dictionary (CC0), written by hand as bond lists: '-' single,
+// Atom names and bond orders as in the wwPDB chemical component dictionary (CC0), written by hand as bond
+// lists: '-' single,
 // '=' double, ':' aromatic. Names of hydrogens follow PDB format 3; others are left to the distance rule.
 #include "core/residue_templates.h"
 
@@ -19,7 +20,8 @@ struct Source {
 constexpr std::string_view kPeptide =
     "N-CA CA-C C=O C-OXT OXT-HXT N-H N-H1 N-H2 N-H3 CA-HA CA-HA2 CA-HA3 CA-CB";
 constexpr std::string_view kSugarPhosphate =
-    "P=OP1 P-OP2 P-OP3 P-O5' P=O1P P-O2P P-O3P O5'-C5' C5'-C4' C4'-O4' C4'-C3' C3'-O3' C3'-C2' C2'-O2' C2'-C1' "
+    "P=OP1 P-OP2 P-OP3 P-O5' P=O1P P-O2P P-O3P O5'-C5' C5'-C4' C4'-O4' C4'-C3' C3'-O3' C3'-C2' C2'-O2' "
+    "C2'-C1' "
     "C1'-O4' OP3-HOP3 OP2-HOP2 O5'-HO5' O3'-HO3' O2'-HO2' C5'-H5' C5'-H5'' C4'-H4' C3'-H3' C2'-H2' C2'-H2'' "
     "C1'-H1'";
 constexpr ResidueKind kAmino = ResidueKind::aminoAcid;
@@ -28,7 +30,8 @@ constexpr ResidueKind kNucleo = ResidueKind::nucleotide;
 constexpr Source kSources[] = {
     {"ALA", kAmino, kPeptide, "CB-HB1 CB-HB2 CB-HB3"},
     {"ARG", kAmino, kPeptide,
-     "CB-CG CG-CD CD-NE NE-CZ CZ-NH1 CZ=NH2 CB-HB2 CB-HB3 CG-HG2 CG-HG3 CD-HD2 CD-HD3 NE-HE NH1-HH11 NH1-HH12 "
+     "CB-CG CG-CD CD-NE NE-CZ CZ-NH1 CZ=NH2 CB-HB2 CB-HB3 CG-HG2 CG-HG3 CD-HD2 CD-HD3 NE-HE NH1-HH11 "
+     "NH1-HH12 "
      "NH2-HH21 NH2-HH22"},
     {"ASN", kAmino, kPeptide, "CB-CG CG=OD1 CG-ND2 CB-HB2 CB-HB3 ND2-HD21 ND2-HD22"},
     {"ASP ASH", kAmino, kPeptide, "CB-CG CG=OD1 CG-OD2 OD2-HD2 CB-HB2 CB-HB3"},
@@ -39,7 +42,8 @@ constexpr Source kSources[] = {
     {"HIS HID HIE HIP HSD HSE HSP", kAmino, kPeptide,
      "CB-CG CG:ND1 CG:CD2 ND1:CE1 CD2:NE2 CE1:NE2 CB-HB2 CB-HB3 ND1-HD1 CD2-HD2 CE1-HE1 NE2-HE2"},
     {"ILE", kAmino, kPeptide,
-     "CB-CG1 CB-CG2 CG1-CD1 CG1-CD CB-HB CG1-HG12 CG1-HG13 CG2-HG21 CG2-HG22 CG2-HG23 CD1-HD11 CD1-HD12 CD1-HD13"},
+     "CB-CG1 CB-CG2 CG1-CD1 CG1-CD CB-HB CG1-HG12 CG1-HG13 CG2-HG21 CG2-HG22 CG2-HG23 CD1-HD11 CD1-HD12 "
+     "CD1-HD13"},
     {"LEU", kAmino, kPeptide,
      "CB-CG CG-CD1 CG-CD2 CB-HB2 CB-HB3 CG-HG CD1-HD11 CD1-HD12 CD1-HD13 CD2-HD21 CD2-HD22 CD2-HD23"},
     {"LYS LYN", kAmino, kPeptide,
@@ -49,22 +53,24 @@ constexpr Source kSources[] = {
     {"PHE", kAmino, kPeptide,
      "CB-CG CG:CD1 CG:CD2 CD1:CE1 CD2:CE2 CE1:CZ CE2:CZ CB-HB2 CB-HB3 CD1-HD1 CD2-HD2 CE1-HE1 CE2-HE2 CZ-HZ"},
     {"PRO", kAmino, kPeptide, "CB-CG CG-CD CD-N CB-HB2 CB-HB3 CG-HG2 CG-HG3 CD-HD2 CD-HD3"},
-    {"PYL", kAmino,
-     "N-CA CA-C C=O C-OXT OXT-HXT N-H N-H2 CA-HA CA-CB",
+    {"PYL", kAmino, "N-CA CA-C C=O C-OXT OXT-HXT N-H N-H2 CA-HA CA-CB",
      "CB-CG CG-CD CD-CE CE-NZ NZ-C2 C2=O2 C2-CA2 CA2-N2 CA2-CB2 N2=CE2 CE2-CD2 CD2-CG2 CG2-CB2 CB2-HB2"},
     {"SEC", kAmino, kPeptide, "CB-SE SE-HE CB-HB2 CB-HB3"},
     {"SER", kAmino, kPeptide, "CB-OG OG-HG CB-HB2 CB-HB3"},
     {"THR", kAmino, kPeptide, "CB-OG1 CB-CG2 OG1-HG1 CB-HB CG2-HG21 CG2-HG22 CG2-HG23"},
     {"TRP", kAmino, kPeptide,
-     "CB-CG CG:CD1 CG:CD2 CD1:NE1 NE1:CE2 CE2:CD2 CD2:CE3 CE3:CZ3 CZ3:CH2 CH2:CZ2 CZ2:CE2 CB-HB2 CB-HB3 CD1-HD1 "
+     "CB-CG CG:CD1 CG:CD2 CD1:NE1 NE1:CE2 CE2:CD2 CD2:CE3 CE3:CZ3 CZ3:CH2 CH2:CZ2 CZ2:CE2 CB-HB2 CB-HB3 "
+     "CD1-HD1 "
      "NE1-HE1 CE3-HE3 CZ2-HZ2 CZ3-HZ3 CH2-HH2"},
     {"TYR", kAmino, kPeptide,
-     "CB-CG CG:CD1 CG:CD2 CD1:CE1 CD2:CE2 CE1:CZ CE2:CZ CZ-OH OH-HH CB-HB2 CB-HB3 CD1-HD1 CD2-HD2 CE1-HE1 CE2-HE2"},
+     "CB-CG CG:CD1 CG:CD2 CD1:CE1 CD2:CE2 CE1:CZ CE2:CZ CZ-OH OH-HH CB-HB2 CB-HB3 CD1-HD1 CD2-HD2 CE1-HE1 "
+     "CE2-HE2"},
     {"VAL", kAmino, kPeptide, "CB-CG1 CB-CG2 CB-HB CG1-HG11 CG1-HG12 CG1-HG13 CG2-HG21 CG2-HG22 CG2-HG23"},
     {"A DA ADE RA A5 A3 DA5 DA3", kNucleo, kSugarPhosphate,
      "C1'-N9 N9:C8 C8:N7 N7:C5 C5:C6 C6-N6 C6:N1 N1:C2 C2:N3 N3:C4 C4:C5 C4:N9 C8-H8 N6-H61 N6-H62 C2-H2"},
     {"G DG GUA RG G5 G3 DG5 DG3", kNucleo, kSugarPhosphate,
-     "C1'-N9 N9:C8 C8:N7 N7:C5 C5-C6 C6=O6 C6-N1 N1-C2 C2-N2 C2=N3 N3-C4 C4:C5 C4:N9 C8-H8 N1-H1 N2-H21 N2-H22"},
+     "C1'-N9 N9:C8 C8:N7 N7:C5 C5-C6 C6=O6 C6-N1 N1-C2 C2-N2 C2=N3 N3-C4 C4:C5 C4:N9 C8-H8 N1-H1 N2-H21 "
+     "N2-H22"},
     {"I DI", kNucleo, kSugarPhosphate,
      "C1'-N9 N9:C8 C8:N7 N7:C5 C5-C6 C6=O6 C6-N1 N1-C2 C2=N3 N3-C4 C4:C5 C4:N9 C8-H8 N1-H1 C2-H2"},
     {"C DC CYT RC C5 C3 DC5 DC3", kNucleo, kSugarPhosphate,

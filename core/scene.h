@@ -50,11 +50,11 @@ struct DirectionalLight {
 
 /// Key, fill and ambient light, and the highlight of the key light (Blinn-Phong), in linear light.
 struct Lighting {
-  DirectionalLight key{{0.5, -0.65, -0.8}, 0.85};
-  DirectionalLight fill{{-0.6, 0.2, -0.75}, 0.25};
-  double ambient = 0.22;
-  double specular = 0.12;
-  double shininess = 48;
+  DirectionalLight key{{0.45, -0.6, -0.8}, 0.76};
+  DirectionalLight fill{{-0.7, 0.25, -0.6}, 0.16};
+  double ambient = 0.12;
+  double specular = 0.16;
+  double shininess = 60;
 };
 
 struct Background {

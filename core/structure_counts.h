@@ -16,9 +16,10 @@ struct LigandCount {
 };
 
 struct StructureCounts {
-  std::size_t atoms = 0;     ///< every alternate location counted
-  std::size_t residues = 0;  ///< distinct chain + number + insertion code: a place with two residue names counts once
-  std::size_t chains = 0;    ///< distinct author chain ids
+  std::size_t atoms = 0;  ///< every alternate location counted
+  std::size_t residues =
+      0;  ///< distinct chain + number + insertion code: a place with two residue names counts once
+  std::size_t chains = 0;            ///< distinct author chain ids
   std::vector<LigandCount> ligands;  ///< residues that are neither polymer nor water, by name
 };
 

@@ -27,7 +27,7 @@ bool discBounds(ProjectedCenter center, vec3 axis, float halfLength, float radiu
   bounds = vec2(LARGEST, -LARGEST);
   for (int end = -1; end <= 1; end += 2) {
     float h = float(end) * halfLength;
-    bool perspective = uView.scale.w > 0.5;
+    bool perspective = isPerspective(uView);
     float depth = perspective ? center.depth - h * axis.z : 1.0;
     // slope of the disc's centre minus slope of the cylinder's, without cancellation
     float shift = perspective ? h * (axisAlong + slope * axis.z) / depth : h * axisAlong;
@@ -43,10 +43,12 @@ void main() {
   Split x = twoSum(aEndRadius.x, aOtherEnd.x);
   Split y = twoSum(aEndRadius.y, aOtherEnd.y);
   Split z = twoSum(aEndRadius.z, aOtherEnd.z);
-  ProjectedCenter center = projectCenter(uView, 0.5 * vec3(x.hi, y.hi, z.hi), 0.5 * vec3(x.lo, y.lo, z.lo));
+  vec3 cHi = 0.5 * vec3(x.hi, y.hi, z.hi);
+  vec3 cLo = 0.5 * vec3(x.lo, y.lo, z.lo);
+  ProjectedCenter center = projectCenter(uView, cHi, cLo);
   vec3 along = aOtherEnd - aEndRadius.xyz;
   float halfLength = 0.5 * length(along);
-  vec3 axis = vec3(dot(uView.xRowHi.xyz, along), dot(uView.yRowHi.xyz, along), dot(uView.zRowHi.xyz, along));
+  vec3 axis = turn(uView, along);
   axis = halfLength > 0.0 ? normalize(axis) : vec3(0.0, 0.0, 1.0);
 
   vPixel = vec4(center.pixelX.hi, center.pixelY.hi, center.pixelX.lo, center.pixelY.lo);
@@ -55,7 +57,8 @@ void main() {
   vDepth = vec2(center.depth, nearEye(uView, center.depth, radius + halfLength) ? 1.0 : 0.0);
   vColorsIds = aColorsIds;
 #ifdef DISTANCE
-  vRange = vec2(center.range.hi, center.range.lo);
+  Split range = centerRange(uView, cHi, cLo);
+  vRange = vec2(range.hi, range.lo);
 #endif
 
   float reach = halfLength * abs(axis.z) + radius;
@@ -63,7 +66,7 @@ void main() {
     gl_Position = kNowhere;
     return;
   }
-  vec2 lean = axis.xy + (uView.scale.w > 0.5 ? axis.z * center.view.xy / center.depth : vec2(0.0));
+  vec2 lean = axis.xy + (isPerspective(uView) ? axis.z * center.view.xy / center.depth : vec2(0.0));
   vec2 direction = dot(lean, lean) > 1e-12 ? normalize(lean) : vec2(1.0, 0.0);
   vec2 across = vec2(-direction.y, direction.x);
   vec2 boundsAlong, boundsAcross;

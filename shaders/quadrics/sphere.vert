@@ -23,7 +23,8 @@ void main() {
   vDepth = vec2(center.depth, nearEye(uView, center.depth, radius) ? 1.0 : 0.0);
   vColorId = aColorId;
 #ifdef DISTANCE
-  vRange = vec2(center.range.hi, center.range.lo);
+  Split range = centerRange(uView, aCenterRadius.xyz, vec3(0.0));
+  vRange = vec2(range.hi, range.lo);
 #endif
 
   if (!(radius > 0.0) || center.view.z - radius > uView.depth.z) {

@@ -64,15 +64,6 @@ FN Split multiplySplit(Split a, Split b) {
   return twoSum(p.hi, lo);
 }
 
-// a / b; b.hi must not be 0.
-FN Split divideSplit(Split a, Split b) {
-  PRECISE real q = a.hi / b.hi;
-  Split product = multiplySplit(makeSplit(q, real(0)), b);
-  Split rest = addSplit(a, negateSplit(product));
-  PRECISE real correction = rest.hi / b.hi;
-  return twoSum(q, correction);
-}
-
 // sqrt(a); a.hi must not be negative.
 FN Split sqrtSplit(Split a) {
   if (a.hi <= real(0)) return makeSplit(real(0), real(0));

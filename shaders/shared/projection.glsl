@@ -7,58 +7,109 @@
 // precision at any distance (MATH: docs/methods.md, "Quadrics").
 
 struct ProjectedCenter {
-  vec3 view;      // view-space position, rounded
-  real depth;     // distance in front of the eye plane, rounded; 1 for orthographic views
-  Split pixelX;   // projected pixel coordinates; meaningless where depth is not positive
+  vec3 view;     // view-space position, rounded
+  real depth;    // distance in front of the eye plane, rounded; 1 for orthographic views
+  Split pixelX;  // projected pixel coordinates; meaningless where depth is not positive
   Split pixelY;
-  Split range;    // perspective: distance from the eye; orthographic: distance behind the near plane
 };
 
+FN bool isPerspective(ViewBlock view) { return view.scale.z > real(0.5); }
+
+// row . c + translation, where cHi has at most 12 significant bits per component, as rowHi has: their products are exact.
 FN Split dotRow(vec4 rowHi, vec4 rowLo, vec3 cHi, vec3 cLo) {
-  Split s = addSplit(twoProduct(rowHi.x, cHi.x), twoProduct(rowHi.y, cHi.y));
-  s = addSplit(s, twoProduct(rowHi.z, cHi.z));
-  PRECISE real small = (rowLo.x * cHi.x + rowLo.y * cHi.y + rowLo.z * cHi.z) +
-                       (rowHi.x * cLo.x + rowHi.y * cLo.y + rowHi.z * cLo.z);
-  s = addSplit(s, makeSplit(rowHi.w, rowLo.w));
-  return addSplit(s, makeSplit(small, real(0)));
+  Split xy = twoSum(rowHi.x * cHi.x, rowHi.y * cHi.y);
+  Split xyz = twoSum(xy.hi, rowHi.z * cHi.z);
+  Split all_ = twoSum(xyz.hi, rowHi.w);
+  PRECISE real cross1 = rowHi.x * cLo.x + rowHi.y * cLo.y + rowHi.z * cLo.z;
+  PRECISE real cross2 = rowLo.x * (cHi.x + cLo.x) + rowLo.y * (cHi.y + cLo.y) + rowLo.z * (cHi.z + cLo.z);
+  PRECISE real rest = (cross1 + cross2) + ((xy.lo + xyz.lo) + (all_.lo + rowLo.w));
+  return twoSum(all_.hi, rest);
+}
+
+// a / b, not normalized; b.hi must not be 0.
+FN Split quotient(Split a, Split b) {
+  PRECISE real q = a.hi / b.hi;
+  Split product = twoProduct(q, b.hi);
+  PRECISE real rest = ((a.hi - product.hi) - product.lo) + (a.lo - q * b.lo);
+  return makeSplit(q, rest / b.hi);
+}
+
+// Distance of the eye plane from a point of view-space height z.
+FN Split depthOf(ViewBlock view, Split z) {
+  Split depth = twoSum(view.depth.x, -z.hi);
+  PRECISE real rest = depth.lo + (view.depth.y - z.lo);
+  return twoSum(depth.hi, rest);
+}
+
+// View-space position of cHi + cLo, given relative to the primitives' origin; x and y in pixels (at unit depth).
+struct RowProducts {
+  Split x;
+  Split y;
+  Split z;
+};
+
+FN RowProducts transformPoint(ViewBlock view, vec3 cHi, vec3 cLo) {
+  vec3 upper = vec3(upperHalf(cHi.x), upperHalf(cHi.y), upperHalf(cHi.z));
+  PRECISE vec3 lower = (cHi - upper) + cLo;
+  RowProducts p;
+  p.x = dotRow(view.xRowHi, view.xRowLo, upper, lower);
+  p.y = dotRow(view.yRowHi, view.yRowLo, upper, lower);
+  p.z = dotRow(view.zRowHi, view.zRowLo, upper, lower);
+  return p;
 }
 
 // Projects the point cHi + cLo, given relative to the primitives' origin.
 FN ProjectedCenter projectCenter(ViewBlock view, vec3 cHi, vec3 cLo) {
-  Split x = dotRow(view.xRowHi, view.xRowLo, cHi, cLo);
-  Split y = dotRow(view.yRowHi, view.yRowLo, cHi, cLo);
-  Split z = dotRow(view.zRowHi, view.zRowLo, cHi, cLo);
-  Split perPixel = makeSplit(view.scale.y, view.scale.z);
-
+  RowProducts p = transformPoint(view, cHi, cLo);
   ProjectedCenter c;
-  c.view = vec3(x.hi, y.hi, z.hi);
+  c.view = vec3((p.x.hi + p.x.lo) * view.scale.x, (p.y.hi + p.y.lo) * view.scale.x, p.z.hi + p.z.lo);
   c.depth = real(1);
-  Split slopeX = x;
-  Split slopeY = y;
-  if (view.scale.w > real(0.5)) {
-    Split depth = addSplit(makeSplit(view.depth.x, view.depth.y), negateSplit(z));
-    c.depth = depth.hi;
-    c.range = sqrtSplit(addSplit(addSplit(multiplySplit(x, x), multiplySplit(y, y)), multiplySplit(depth, depth)));
-    if (depth.hi <= real(0)) depth = makeSplit(real(1), real(0));
-    slopeX = divideSplit(x, depth);
-    slopeY = divideSplit(y, depth);
-  } else {
-    c.range = addSplit(makeSplit(view.depth.z, view.depthMap.y), negateSplit(z));
+  if (isPerspective(view)) {
+    Split depth = depthOf(view, p.z);
+    c.depth = depth.hi + depth.lo;
+    if (!(depth.hi > real(0))) depth = makeSplit(real(1), real(0));
+    p.x = quotient(p.x, depth);
+    p.y = quotient(p.y, depth);
   }
-  c.pixelX = addSplit(multiplySplit(slopeX, perPixel), makeSplit(view.center.x, view.center.z));
-  c.pixelY = addSplit(multiplySplit(slopeY, perPixel), makeSplit(view.center.y, view.center.w));
+  c.pixelX = twoSum(p.x.hi, view.center.x);
+  c.pixelY = twoSum(p.y.hi, view.center.y);
+  c.pixelX.lo = c.pixelX.lo + (p.x.lo + view.center.z);
+  c.pixelY.lo = c.pixelY.lo + (p.y.lo + view.center.w);
   return c;
+}
+
+// Perspective: distance from the eye. Orthographic: distance behind the near plane.
+FN Split centerRange(ViewBlock view, vec3 cHi, vec3 cLo) {
+  RowProducts p = transformPoint(view, cHi, cLo);
+  if (!isPerspective(view)) {
+    return addSplit(makeSplit(view.depth.z, view.depthMap.y), negateSplit(p.z));
+  }
+  Split perPixel = makeSplit(view.scale.x, view.scale.y);
+  Split x = multiplySplit(p.x, perPixel);
+  Split y = multiplySplit(p.y, perPixel);
+  Split depth = depthOf(view, p.z);
+  return sqrtSplit(addSplit(addSplit(multiplySplit(x, x), multiplySplit(y, y)), multiplySplit(depth, depth)));
+}
+
+// A direction in view space.
+FN vec3 turn(ViewBlock view, vec3 v) {
+  return vec3((dot(vec3(view.xRowHi.x, view.xRowHi.y, view.xRowHi.z), v) +
+               dot(vec3(view.xRowLo.x, view.xRowLo.y, view.xRowLo.z), v)) * view.scale.x,
+              (dot(vec3(view.yRowHi.x, view.yRowHi.y, view.yRowHi.z), v) +
+               dot(vec3(view.yRowLo.x, view.yRowLo.y, view.yRowLo.z), v)) * view.scale.x,
+              dot(vec3(view.zRowHi.x, view.zRowHi.y, view.zRowHi.z), v) +
+                  dot(vec3(view.zRowLo.x, view.zRowLo.y, view.zRowLo.z), v));
 }
 
 // Unit direction of the ray through a pixel.
 FN vec3 rayDirection(ViewBlock view, vec2 pixel) {
-  if (view.scale.w < real(0.5)) return vec3(real(0), real(0), real(-1));
+  if (!isPerspective(view)) return vec3(real(0), real(0), real(-1));
   return normalize(vec3((pixel.x - view.center.x) * view.scale.x, (pixel.y - view.center.y) * view.scale.x, real(-1)));
 }
 
 // Whether a ray is better taken from the eye than from the plane of the primitive's centre: close by, or behind.
 FN bool nearEye(ViewBlock view, real depth, real radius) {
-  return view.scale.w > real(0.5) && depth < real(2) * radius;
+  return isPerspective(view) && depth < real(2) * radius;
 }
 
 // A point of the ray through `pixel`, relative to the primitive's centre; for nearEye() it is the eye itself.
@@ -71,13 +122,13 @@ FN vec3 rayPoint(ViewBlock view, vec2 pixel, vec2 pixelHi, vec2 pixelLo, vec3 ce
 // Value for a reversed-z depth buffer of a point at view-space z: 1 on the near plane, 0 on the far plane.
 FN real depthValue(ViewBlock view, real z) {
   real aboveFar = (z - view.depth.w) * view.depthMap.x;
-  if (view.scale.w > real(0.5)) return aboveFar / (view.depth.x - z);
+  if (isPerspective(view)) return aboveFar / (view.depth.x - z);
   return aboveFar;
 }
 
 // Distance along the unit ray from its origin to a point `hit` relative to the centre, rounded once.
 FN real rayDistance(ViewBlock view, vec3 centerView, Split range, vec3 hit) {
-  if (view.scale.w < real(0.5)) return range.hi + (range.lo - hit.z);
+  if (!isPerspective(view)) return range.hi + (range.lo - hit.z);
   vec3 fromEye = vec3(centerView.x, centerView.y, centerView.z - view.depth.x);
   real squares = real(2) * dot(fromEye, hit) + dot(hit, hit);  // |fromEye + hit|^2 - |fromEye|^2
   real total = length(fromEye + hit) + range.hi;
@@ -99,7 +150,7 @@ struct Extent {
 FN Extent projectedExtent(ViewBlock view, real slope, real depth, real radius, real axisX, real axisZ) {
   Extent e;
   real r2 = radius * radius;
-  if (view.scale.w < real(0.5)) {
+  if (!isPerspective(view)) {
     real half_ = radius * sqrt(max(real(1) - axisX * axisX, real(0)));
     e.low = -half_;
     e.high = half_;

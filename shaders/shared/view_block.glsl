@@ -2,11 +2,13 @@
 // Filled by render/view_block.cpp. Lengths in Å, pixels as in core/view.h.
 
 struct ViewBlock {
-  // View-space point of a point C given relative to Primitives::origin: rotation * C + translation.
-  // xyz = a row of the rotation, w = that component of the translation; Hi + Lo is their sum.
+  // A point C given relative to Primitives::origin lies at rotation * C + translation in view space. xyz = a row of the
+  // rotation, w = that component of the translation; the x and y rows are divided by the pixel size, so that they give
+  // pixels (at unit depth | as they are). Each number is the sum of Hi, of which xyz have at most 12 significant
+  // bits, and Lo.
   vec4 xRowHi, yRowHi, zRowHi;
   vec4 xRowLo, yRowLo, zRowLo;
-  vec4 scale;     // x: pixel size (at unit depth | in Å); y + z: its reciprocal, hi and lo; w: 1 perspective, 0 orthographic
+  vec4 scale;     // x + y: pixel size (at unit depth | in Å), hi and lo; z: 1 perspective, 0 orthographic; w: 0
   vec4 center;    // x, y: pixel of the optical axis, hi; z, w: lo
   vec4 depth;     // x + y: eye to pivot, hi and lo; z: nearZ; w: farZ
   vec4 depthMap;  // x: factor of the depth value (depthValue in projection.glsl); y: nearZ's lo; z, w: 0
