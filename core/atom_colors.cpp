@@ -9,11 +9,11 @@ namespace meniscus {
 
 namespace {
 
-// Neighbours in the list differ in hue and in lightness; the first five stay apart for readers with a red-green
-// deficiency.
-constexpr std::array<Rgb, 20> kChainColors{0x4C78A8, 0xF2A541, 0x59A89C, 0xD4605A, 0xA98BC3, 0xE8D174, 0x7A5C47,
-                                           0x8CC5E3, 0xB2477F, 0x6E9F46, 0xF2B8C6, 0x3D5A6C, 0xC7B299, 0x9ED06B,
-                                           0x8F4E8B, 0xE27D3A, 0x5E7FD6, 0xBCBD45, 0x2F8F6B, 0xB0B0B0};
+// Neighbours in the list differ in hue and in lightness. The first ones are neither the blue of nitrogen nor the red of
+// oxygen, so that carbons by chain stay apart from both.
+constexpr std::array<Rgb, 20> kChainColors{0x59A89C, 0xF2A541, 0xA98BC3, 0xB9C46A, 0xE7A6B8, 0x8CC5E3, 0xA3805F,
+                                           0x4C78A8, 0xD4605A, 0xE8D174, 0x6E9F46, 0xB2477F, 0x3D5A6C, 0xC7B299,
+                                           0x9ED06B, 0x8F4E8B, 0xE27D3A, 0x5E7FD6, 0x2F8F6B, 0xB0B0B0};
 
 constexpr Rgb kNoValue = 0xAAAAAA;
 

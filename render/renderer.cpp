@@ -98,7 +98,8 @@ struct Renderer::Impl {
     graph.want(target);
   }
 
-  void drawTile(const View& view, const Tile& tile, ShadeSettings shade, int samples, const gl::Texture& picture);
+  void drawTile(const View& view, const Tile& tile, ShadeSettings shade, int samples, const gl::Texture& picture,
+                const std::function<void(double)>& progress);
   void execute(FrameGraph& graph) { graph.execute(stats, options.timePasses); }
 };
 
@@ -112,7 +113,7 @@ void Renderer::setPrimitives(std::shared_ptr<const Primitives> primitives) {
 }
 
 void Renderer::Impl::drawTile(const View& view, const Tile& tile, ShadeSettings shade, int samples,
-                              const gl::Texture& picture) {
+                              const gl::Texture& picture, const std::function<void(double)>& progress) {
   shade.final = samples == 1;
   shadeUniforms.set(shade);
   if (shade.final) {
@@ -129,6 +130,7 @@ void Renderer::Impl::drawTile(const View& view, const Tile& tile, ShadeSettings 
     FrameGraph graph(pool);
     buildFrame(graph, shade, tile, graph.import("sum", *sum, i == 0 ? Clear::zero : Clear::none));
     execute(graph);
+    progress((i + 1.0) / samples);
   }
   FrameGraph graph(pool);
   const TextureRef target = graph.import("picture", picture, Clear::none);
@@ -152,6 +154,8 @@ void Renderer::renderPicture(const View& view, const Lighting& lighting, const B
   const std::size_t rowBytes = pixelBytes * static_cast<std::size_t>(view.size.width);
   const TileSize tileSize = chooseTileSize(view.size, static_cast<int>(pixelBytes), r.options.maxTileSize);
   std::vector<std::byte> band;
+  const double pixels = static_cast<double>(view.size.width) * view.size.height;
+  double drawn = 0;
   for (int top = view.size.height; top > 0; top -= tileSize.height) {
     const int height = std::min(tileSize.height, top);
     band.resize(rowBytes * static_cast<std::size_t>(height));
@@ -160,8 +164,12 @@ void Renderer::renderPicture(const View& view, const Lighting& lighting, const B
       gl::Texture* picture = r.pool.acquire("picture", {textureFormat(format), tile.width, tile.height});
       {
         Stopwatch watch(r.stats.drawMs);
-        r.drawTile(view, tile, shade, settings.samples, *picture);
+        const double share = static_cast<double>(tile.width) * tile.height / pixels;
+        r.drawTile(view, tile, shade, settings.samples, *picture, [&](double done) {
+          if (progress) progress(drawn + share * done);
+        });
         glFinish();
+        drawn += share;
       }
       Stopwatch watch(r.stats.readbackMs);
       picture->read(tile.width, tile.height, view.size.width, band.data() + pixelBytes * static_cast<std::size_t>(x));
@@ -171,7 +179,7 @@ void Renderer::renderPicture(const View& view, const Lighting& lighting, const B
     for (int y = height; y-- > 0;) {
       sink.writeRows(std::span(band).subspan(rowBytes * static_cast<std::size_t>(y), rowBytes));
     }
-    if (progress) progress(static_cast<double>(view.size.height - top + height) / view.size.height);
+    if (progress) progress(drawn);
   }
 }
 
