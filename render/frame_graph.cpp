@@ -65,7 +65,9 @@ void TexturePool::trim() {
   std::erase_if(entries_, [](const Entry& entry) { return !entry.used; });
 }
 
-const gl::Texture& PassContext::texture(TextureRef ref) const { return graph_.texture(ref); }
+const gl::Texture& PassContext::texture(TextureRef ref) const {
+  return graph_.texture(ref);
+}
 
 bool PassContext::isLive(TextureRef ref) const {
   return ref.valid() && graph_.resources_[static_cast<std::size_t>(ref.index)].live;
@@ -92,7 +94,9 @@ void FrameGraph::addPass(std::string name, std::vector<TextureRef> reads, std::v
   passes_.push_back({std::move(name), std::move(reads), std::move(writes), std::move(execute)});
 }
 
-void FrameGraph::want(TextureRef ref) { resources_[static_cast<std::size_t>(ref.index)].wanted = true; }
+void FrameGraph::want(TextureRef ref) {
+  resources_[static_cast<std::size_t>(ref.index)].wanted = true;
+}
 
 const gl::Texture& FrameGraph::texture(TextureRef ref) const {
   MENISCUS_CHECK(ref.valid());
@@ -187,7 +191,8 @@ void FrameGraph::execute(RenderStats& stats, bool timed) {
   cull();
   const auto addOmission = [&](const std::string& what, const std::string& reason) {
     const auto same = [&](const OmissionStats& o) { return o.what == what; };
-    if (std::none_of(stats.omissions.begin(), stats.omissions.end(), same)) stats.omissions.push_back({what, reason});
+    if (std::none_of(stats.omissions.begin(), stats.omissions.end(), same))
+      stats.omissions.push_back({what, reason});
   };
   for (const OmissionStats& o : omissions_) addOmission(o.what, o.reason);
   for (const Resource& r : resources_) {

@@ -1,6 +1,6 @@
 #pragma once
-// Passes with declared reads and writes. Callers say what they want; what does not lead there is left out, and
-// textures live from their first use to their last. The graph knows no effect and never reorders.
+// Passes with declared reads and writes. Callers say what they want; what does not lead there is left out,
+// and textures live from their first use to their last. The graph knows no effect and never reorders.
 
 #include <functional>
 #include <map>
@@ -76,7 +76,9 @@ class FrameGraph {
   void addPass(std::string name, std::vector<TextureRef> reads, std::vector<Attachment> writes,
                std::function<void(const PassContext&)> execute);
   /// Notes for --explain that something was not even added.
-  void leaveOut(std::string what, std::string reason) { omissions_.push_back({std::move(what), std::move(reason)}); }
+  void leaveOut(std::string what, std::string reason) {
+    omissions_.push_back({std::move(what), std::move(reason)});
+  }
 
   void want(TextureRef ref);
   /// Runs what leads to the wanted textures. Wanted textures that the graph created stay readable through

@@ -16,7 +16,8 @@ constexpr int kCornersPerQuad = 4;
 
 int instanceCount(std::size_t count) {
   if (count > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
-    throw InputError("the scene has more than 2,147,483,647 primitives; draw a part of it (--select, fewer copies)");
+    throw InputError(
+        "the scene has more than 2,147,483,647 primitives; draw a part of it (--select, fewer copies)");
   }
   return static_cast<int>(count);
 }
@@ -46,12 +47,15 @@ QuadricBuffers::Kind uploadInstances(const std::vector<T>& instances) {
   return kind;
 }
 
-void addKind(FrameGraph& graph, const QuadricBuffers::Kind& kind, std::string_view name, ShaderLibrary& shaders,
-             const GBufferRefs& g) {
-  graph.addPass(std::string(name), {g.depth},
-                {{g.depth, FrameGraph::kDepth}, {g.albedo, 0}, {g.normal, 1}, {g.id, 2}, {g.distance, 3}},
-                [&kind, &shaders, g, stem = "quadrics/" + std::string(name.substr(0, name.size() - 1))](
-                    const PassContext& context) {
+void addKind(FrameGraph& graph, const QuadricBuffers::Kind& kind, std::string_view shape,
+             const std::string& passName, ShaderLibrary& shaders, const GBufferRefs& g) {
+  std::vector<FrameGraph::Attachment> writes{{g.depth, FrameGraph::kDepth}};
+  for (const auto& [channel, location] :
+       {std::pair{g.albedo, 0}, std::pair{g.normal, 1}, std::pair{g.id, 2}, std::pair{g.distance, 3}}) {
+    if (channel.valid()) writes.push_back({channel, location});
+  }
+  graph.addPass(passName, {g.depth}, writes,
+                [&kind, &shaders, g, stem = "quadrics/" + std::string(shape)](const PassContext& context) {
                   ShaderFlags flags;
                   if (context.isLive(g.albedo)) flags.insert("ALBEDO");
                   if (context.isLive(g.normal)) flags.insert("NORMAL");
@@ -96,17 +100,18 @@ std::vector<ResourceStats> QuadricBuffers::buffers() const {
   return out;
 }
 
-void addQuadrics(FrameGraph& graph, const QuadricBuffers& quadrics, ShaderLibrary& shaders, const GBufferRefs& gbuffer) {
-  if (quadrics.spheres().count > 0) {
-    addKind(graph, quadrics.spheres(), "spheres", shaders, gbuffer);
-  } else {
-    graph.leaveOut("pass spheres", "the scene has none");
-  }
-  if (quadrics.cylinders().count > 0) {
-    addKind(graph, quadrics.cylinders(), "cylinders", shaders, gbuffer);
-  } else {
-    graph.leaveOut("pass cylinders", "the scene has none");
-  }
+void addQuadrics(FrameGraph& graph, const QuadricBuffers& quadrics, ShaderLibrary& shaders,
+                 const GBufferRefs& gbuffer, const std::string& prefix) {
+  const auto add = [&](const QuadricBuffers::Kind& kind, std::string_view shape) {
+    const std::string name = prefix + std::string(shape) + "s";
+    if (kind.count > 0) {
+      addKind(graph, kind, shape, name, shaders, gbuffer);
+    } else {
+      graph.leaveOut("pass " + name, "the scene has none");
+    }
+  };
+  add(quadrics.spheres(), "sphere");
+  add(quadrics.cylinders(), "cylinder");
 }
 
 }  // namespace meniscus

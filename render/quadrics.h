@@ -1,8 +1,9 @@
 #pragma once
 // Spheres and cylinders as ray-cast quadrics: a rectangle per primitive, a ray per fragment.
 // Sigg, Weyrich, Botsch, Gross, GPU-Based Ray-Casting of Quadratic Surfaces, PBG 2006,
-// doi 10.2312/SPBG/SPBG06/059-065. Deviations: rectangles instead of point sprites, whose size drivers limit (255 px on
-// llvmpipe); intersection relative to each primitive's centre instead of in window space (shaders/shared/).
+// doi 10.2312/SPBG/SPBG06/059-065. Deviations: rectangles instead of point sprites, whose size drivers limit
+// (255 px on llvmpipe); intersection relative to each primitive's centre instead of in window space
+// (shaders/shared/).
 
 #include <vector>
 
@@ -33,7 +34,10 @@ class QuadricBuffers {
   Kind spheres_, cylinders_;
 };
 
-/// Adds a pass for each kind of quadric there is. The view's uniform block must be bound (render/renderer.cpp).
-void addQuadrics(FrameGraph& graph, const QuadricBuffers& quadrics, ShaderLibrary& shaders, const GBufferRefs& gbuffer);
+/// Adds a pass for each kind of quadric there is. The view's uniform block must be bound
+/// (render/renderer.cpp). Channels of `gbuffer` that are not valid are not written; `prefix` goes before the
+/// passes' names.
+void addQuadrics(FrameGraph& graph, const QuadricBuffers& quadrics, ShaderLibrary& shaders,
+                 const GBufferRefs& gbuffer, const std::string& prefix = {});
 
 }  // namespace meniscus

@@ -9,8 +9,8 @@ namespace meniscus {
 
 struct PassStats {
   std::string name;
-  int runs = 0;               ///< how often (tiles x samples)
-  double milliseconds = 0;    ///< all runs together, measured when RendererOptions::timePasses
+  int runs = 0;             ///< how often (tiles x samples)
+  double milliseconds = 0;  ///< all runs together, measured when RendererOptions::timePasses
 };
 
 struct OmissionStats {
@@ -26,9 +26,9 @@ struct ResourceStats {
 struct RenderStats {
   std::vector<PassStats> passes;
   std::vector<OmissionStats> omissions;
-  std::vector<std::string> programs;     ///< compiled so far, by name and flags
-  std::vector<ResourceStats> buffers;    ///< alive
-  std::vector<ResourceStats> textures;   ///< alive
+  std::vector<std::string> programs;    ///< compiled so far, by name and flags
+  std::vector<ResourceStats> buffers;   ///< alive
+  std::vector<ResourceStats> textures;  ///< alive
   double uploadMs = 0, compileMs = 0, drawMs = 0, readbackMs = 0;
   int tiles = 0;
 };

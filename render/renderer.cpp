@@ -6,10 +6,12 @@
 #include <chrono>
 
 #include "core/error.h"
+#include "core/light_view.h"
 #include "core/sampling.h"
 #include "render/gbuffer.h"
 #include "render/post/resolve.h"
 #include "render/post/shade.h"
+#include "render/post/shadow.h"
 #include "render/quadrics.h"
 #include "render/view_block.h"
 
@@ -22,11 +24,17 @@ constexpr std::int64_t kTilePixels = std::int64_t{8} << 20;
 // Finished rows wait for the ones beside them: at most 128 MiB, unless one row alone is larger.
 constexpr std::int64_t kBandBytes = std::int64_t{128} << 20;
 
+// Side of the largest shadow map [texels].
+constexpr int kShadowMapSize = 8192;
+
 gl::TextureFormat textureFormat(PixelFormat format) {
   switch (format) {
-    case PixelFormat::rgba8: return gl::TextureFormat::rgba8;
-    case PixelFormat::rgba16: return gl::TextureFormat::rgba16;
-    case PixelFormat::rgbaFloat: return gl::TextureFormat::rgba32f;
+    case PixelFormat::rgba8:
+      return gl::TextureFormat::rgba8;
+    case PixelFormat::rgba16:
+      return gl::TextureFormat::rgba16;
+    case PixelFormat::rgbaFloat:
+      return gl::TextureFormat::rgba32f;
   }
   return gl::TextureFormat::rgba8;
 }
@@ -40,8 +48,8 @@ TileSize chooseTileSize(ImageSize picture, int bytesPerRowPixel, int maxTileSize
   int side = std::min({limits.textureSize, limits.viewportWidth, limits.viewportHeight});
   if (maxTileSize > 0) side = std::min(side, maxTileSize);
   const int width = std::min(picture.width, side);
-  const std::int64_t rows = std::min(kTilePixels / width,
-                                     kBandBytes / (static_cast<std::int64_t>(picture.width) * bytesPerRowPixel));
+  const std::int64_t rows = std::min(
+      kTilePixels / width, kBandBytes / (static_cast<std::int64_t>(picture.width) * bytesPerRowPixel));
   return {width, static_cast<int>(std::clamp<std::int64_t>(rows, 1, std::min(picture.height, side)))};
 }
 
@@ -59,6 +67,14 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+// A picture that is being drawn.
+struct Frame {
+  const View& view;
+  RenderSettings settings;
+  ShadeSettings shade;
+  ShadowMap shadowMap;  // without depth if there are no shadows
+};
+
 }  // namespace
 
 struct Renderer::Impl {
@@ -67,8 +83,10 @@ struct Renderer::Impl {
   TexturePool pool;
   QuadricBuffers quadrics;
   ShadeUniforms shadeUniforms;
+  ShadowUniforms shadowUniforms;
   gl::Buffer viewUniforms;
   std::shared_ptr<const Primitives> primitives = std::make_shared<Primitives>();
+  gl::Texture* shadowMapTexture = nullptr;  // in use while a picture is drawn
   RenderStats stats;
 
   explicit Impl(const RendererOptions& o) : options(o), shaders(o.shaderDir) {
@@ -91,14 +109,22 @@ struct Renderer::Impl {
   }
 
   // One sample of one tile: every pass of the program is named here.
-  void buildFrame(FrameGraph& graph, const ShadeSettings& shade, const Tile& tile, TextureRef target) {
+  void buildFrame(FrameGraph& graph, const Frame& frame, const Tile& tile, TextureRef target) {
     const GBufferRefs gbuffer = createGBuffer(graph, tile.width, tile.height);
     addQuadrics(graph, quadrics, shaders, gbuffer);
-    addShade(graph, shade, shadeUniforms, shaders, gbuffer, target);
+    LightRefs light;
+    if (frame.shadowMap.depth) {
+      light.visibility = addShadow(graph, frame.settings.shadows, frame.shadowMap, shadowUniforms, shaders,
+                                   gbuffer, tile.width, tile.height);
+    } else {
+      graph.leaveOut("pass shadow", "shadows are off");
+    }
+    addShade(graph, frame.shade, shadeUniforms, shaders, gbuffer, light, target);
     graph.want(target);
   }
 
-  void drawTile(const View& view, const Tile& tile, ShadeSettings shade, int samples, const gl::Texture& picture,
+  void drawShadowMap(Frame& frame);
+  void drawTile(const Frame& frame, const Tile& tile, const gl::Texture& picture,
                 const std::function<void(double)>& progress);
   void execute(FrameGraph& graph) { graph.execute(stats, options.timePasses); }
 };
@@ -112,29 +138,56 @@ void Renderer::setPrimitives(std::shared_ptr<const Primitives> primitives) {
   impl_->pool.trim();
 }
 
-void Renderer::Impl::drawTile(const View& view, const Tile& tile, ShadeSettings shade, int samples,
-                              const gl::Texture& picture, const std::function<void(double)>& progress) {
-  shade.final = samples == 1;
-  shadeUniforms.set(shade);
-  if (shade.final) {
-    setView(view, tile, {0, 0});
+// The same primitives as seen from the key light, with only their depth wanted.
+void Renderer::Impl::drawShadowMap(Frame& frame) {
+  const BoundingSphere bounds = primitives->bounds();
+  const gl::Limits limits = gl::queryLimits();
+  const int maxSize =
+      std::min({kShadowMapSize, limits.textureSize, limits.viewportWidth, limits.viewportHeight});
+  const View light =
+      makeLightView(frame.view, frame.shade.lighting.key, bounds, pixelFootprint(frame.view, bounds), maxSize,
+                    frame.settings.shadows.penumbra);
+  const Tile whole{0, 0, light.size.width, light.size.height};
+  gl::Texture* depth = shadowMapTexture =
+      pool.acquire("shadow map", {gl::TextureFormat::depth32f, whole.width, whole.height});
+  setView(light, whole, {0, 0});
+  FrameGraph graph(pool);
+  GBufferRefs gbuffer;
+  gbuffer.depth = graph.import("shadow map", *depth, Clear::zero);
+  addQuadrics(graph, quadrics, shaders, gbuffer, "shadow map: ");
+  graph.want(gbuffer.depth);
+  execute(graph);
+  frame.shadowMap = {light, depth};
+}
+
+void Renderer::Impl::drawTile(const Frame& frame, const Tile& tile, const gl::Texture& picture,
+                              const std::function<void(double)>& progress) {
+  const int samples = frame.settings.samples;
+  const auto setShadow = [&](int sample) {
+    if (frame.shadowMap.depth)
+      shadowUniforms.set(frame.settings.shadows, frame.view, frame.shadowMap, sample, samples);
+  };
+  if (frame.shade.final) {
+    setView(frame.view, tile, {0, 0});
+    setShadow(0);
     FrameGraph graph(pool);
     graph.leaveOut("pass resolve", "one sample per pixel");
-    buildFrame(graph, shade, tile, graph.import("picture", picture, Clear::none));
+    buildFrame(graph, frame, tile, graph.import("picture", picture, Clear::none));
     execute(graph);
     return;
   }
   gl::Texture* sum = pool.acquire("sum", {gl::TextureFormat::rgba32f, tile.width, tile.height});
   for (int i = 0; i < samples; ++i) {
-    setView(view, tile, sampleOffset(i, samples));
+    setView(frame.view, tile, sampleOffset(i, samples));
+    setShadow(i);
     FrameGraph graph(pool);
-    buildFrame(graph, shade, tile, graph.import("sum", *sum, i == 0 ? Clear::zero : Clear::none));
+    buildFrame(graph, frame, tile, graph.import("sum", *sum, i == 0 ? Clear::zero : Clear::none));
     execute(graph);
     progress((i + 1.0) / samples);
   }
   FrameGraph graph(pool);
   const TextureRef target = graph.import("picture", picture, Clear::none);
-  addResolve(graph, {samples, backdrop(shade.background), shade.encodeSrgb}, shaders,
+  addResolve(graph, {samples, backdrop(frame.shade.background), frame.shade.encodeSrgb}, shaders,
              graph.import("sum", *sum, Clear::none), target);
   graph.want(target);
   execute(graph);
@@ -148,7 +201,13 @@ void Renderer::renderPicture(const View& view, const Lighting& lighting, const B
   MENISCUS_CHECK(settings.samples >= 1 && settings.samples <= kMaxSamples);
   Impl& r = *impl_;
   r.prepare();
-  ShadeSettings shade{lighting, background, false, format != PixelFormat::rgbaFloat};
+  Frame frame{
+      view, settings, {lighting, background, settings.samples == 1, format != PixelFormat::rgbaFloat}, {}};
+  r.shadeUniforms.set(frame.shade);
+  if (settings.shadows.mode != ShadowMode::off && !r.primitives->spheres.empty()) {
+    Stopwatch watch(r.stats.drawMs);
+    r.drawShadowMap(frame);
+  }
 
   const std::size_t pixelBytes = bytesPerPixel(format);
   const std::size_t rowBytes = pixelBytes * static_cast<std::size_t>(view.size.width);
@@ -165,14 +224,15 @@ void Renderer::renderPicture(const View& view, const Lighting& lighting, const B
       {
         Stopwatch watch(r.stats.drawMs);
         const double share = static_cast<double>(tile.width) * tile.height / pixels;
-        r.drawTile(view, tile, shade, settings.samples, *picture, [&](double done) {
+        r.drawTile(frame, tile, *picture, [&](double done) {
           if (progress) progress(drawn + share * done);
         });
         glFinish();
         drawn += share;
       }
       Stopwatch watch(r.stats.readbackMs);
-      picture->read(tile.width, tile.height, view.size.width, band.data() + pixelBytes * static_cast<std::size_t>(x));
+      picture->read(tile.width, tile.height, view.size.width,
+                    band.data() + pixelBytes * static_cast<std::size_t>(x));
       r.pool.release(picture);
       ++r.stats.tiles;
     }
@@ -181,6 +241,7 @@ void Renderer::renderPicture(const View& view, const Lighting& lighting, const B
     }
     if (progress) progress(drawn);
   }
+  if (frame.shadowMap.depth) r.pool.release(r.shadowMapTexture);
 }
 
 HitImage Renderer::renderHits(const View& view, HitChannels channels) {
@@ -205,8 +266,8 @@ HitImage Renderer::renderHits(const View& view, HitChannels channels) {
       addQuadrics(graph, r.quadrics, r.shaders, gbuffer);
       graph.leaveOut("pass shade", "no colour is wanted");
       const auto fetch = [&](TextureRef ref, auto* out, std::size_t perPixel) {
-        const std::size_t first = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                                  static_cast<std::size_t>(x);
+        const std::size_t first =
+            static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
         graph.texture(ref).read(tile.width, tile.height, width, out + perPixel * first);
       };
       if (channels.distance) graph.want(gbuffer.distance);
@@ -220,7 +281,8 @@ HitImage Renderer::renderHits(const View& view, HitChannels channels) {
     }
   }
   for (std::size_t i = 0; i < encoded.size(); i += 2) {
-    const bool miss = encoded[i] == 0 && encoded[i + 1] == 0;  // cleared; no normal towards the viewer is stored so
+    const bool miss =
+        encoded[i] == 0 && encoded[i + 1] == 0;  // cleared; no normal towards the viewer is stored so
     image.normal.push_back(miss ? glm::vec3(0.0f)
                                 : f32::decodeNormal(glm::vec2(encoded[i], encoded[i + 1]) / 65535.0f));
   }

@@ -18,7 +18,7 @@ namespace meniscus {
 struct RendererOptions {
   std::filesystem::path shaderDir;  ///< read shaders from here instead of those in the binary; empty = binary
   bool timePasses = false;          ///< waits for the GPU after every pass to know its time
-  int maxTileSize = 0;              ///< largest side of what is drawn at once [pixels]; 0 = what the driver allows
+  int maxTileSize = 0;  ///< largest side of what is drawn at once [pixels]; 0 = what the driver allows
 };
 
 /// Channels of a HitImage that are wanted.
@@ -35,7 +35,8 @@ class Renderer {
   /// What to draw from now on. Uploads only when a frame needs it.
   void setPrimitives(std::shared_ptr<const Primitives> primitives);
 
-  /// Draws a picture of view.size and hands its rows to `sink` from the top. `progress` gets the finished share 0..1.
+  /// Draws a picture of view.size and hands its rows to `sink` from the top. `progress` gets the finished
+  /// share 0..1.
   void renderPicture(const View& view, const Lighting& lighting, const Background& background,
                      const RenderSettings& settings, PixelFormat format, RowSink& sink,
                      const std::function<void(double)>& progress = {});

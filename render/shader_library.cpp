@@ -29,7 +29,8 @@ std::string joined(const ShaderFlags& flags) {
   return out;
 }
 
-// Replaces the source string number that starts a line of a driver's log ("2:14(5): ...", "2(14) : ...") by its path.
+// Replaces the source string number that starts a line of a driver's log ("2:14(5): ...", "2(14) : ...") by
+// its path.
 std::string nameFiles(const std::string& log, const std::vector<std::string>& files) {
   std::istringstream lines(log);
   std::string out;
@@ -63,7 +64,9 @@ std::string ShaderLibrary::read(std::string_view path) const {
   if (!directory_.empty()) {
     const std::filesystem::path file = directory_ / path;
     std::ifstream in(file, std::ios::binary);
-    if (!in) throw InputError(file.string() + ": cannot read this shader; --shader-dir needs a whole copy of shaders/");
+    if (!in)
+      throw InputError(file.string() +
+                       ": cannot read this shader; --shader-dir needs a whole copy of shaders/");
     times_[std::string(path)] = std::filesystem::last_write_time(file);
     return {std::istreambuf_iterator<char>(in), {}};
   }
@@ -77,7 +80,8 @@ void ShaderLibrary::append(std::string_view path, std::vector<std::string>& open
   if (std::find(open.begin(), open.end(), path) != open.end()) {
     throw InputError("shaders/" + std::string(path) + ": includes itself");
   }
-  if (std::find(out.files.begin(), out.files.end(), path) != out.files.end()) return;  // once per program stage
+  if (std::find(out.files.begin(), out.files.end(), path) != out.files.end())
+    return;  // once per program stage
   open.emplace_back(path);
   const std::size_t number = out.files.size();
   out.files.emplace_back(path);
@@ -132,7 +136,8 @@ unsigned ShaderLibrary::compileStage(unsigned kind, std::string_view path, const
   refuse(path, source, std::move(log));
 }
 
-unsigned ShaderLibrary::program(std::string_view vertex, std::string_view fragment, const ShaderFlags& flags) {
+unsigned ShaderLibrary::program(std::string_view vertex, std::string_view fragment,
+                                const ShaderFlags& flags) {
   for (const std::string_view path : {vertex, fragment}) {
     if (!sources_.contains(std::string(path))) sources_[std::string(path)] = source(path);
   }

@@ -26,9 +26,9 @@ class ShaderLibrary {
   /// Sources from `directory`, or those in the binary if it is empty.
   explicit ShaderLibrary(std::filesystem::path directory) : directory_(std::move(directory)) {}
 
-  /// GL name of the program of two stages, such as "quadrics/sphere.vert" and "quadrics/sphere.frag". Flags that neither
-  /// of them understands make no difference. Throws InputError (a file of `directory`) or GraphicsError (built in),
-  /// with path and line, if the driver refuses it.
+  /// GL name of the program of two stages, such as "quadrics/sphere.vert" and "quadrics/sphere.frag". Flags
+  /// that neither of them understands make no difference. Throws InputError (a file of `directory`) or
+  /// GraphicsError (built in), with path and line, if the driver refuses it.
   unsigned program(std::string_view vertex, std::string_view fragment, const ShaderFlags& flags);
 
   /// The text that is compiled for one stage. Throws InputError on a missing or circular include.
@@ -44,7 +44,8 @@ class ShaderLibrary {
  private:
   std::string read(std::string_view path) const;
   void append(std::string_view path, std::vector<std::string>& open, ShaderSource& out) const;
-  unsigned compileStage(unsigned kind, std::string_view path, const ShaderSource& source, const ShaderFlags& flags);
+  unsigned compileStage(unsigned kind, std::string_view path, const ShaderSource& source,
+                        const ShaderFlags& flags);
   [[noreturn]] void refuse(std::string_view path, const ShaderSource& source, std::string log) const;
 
   std::filesystem::path directory_;

@@ -14,8 +14,8 @@ struct Tile {
   int x = 0, y = 0, width = 0, height = 0;
 };
 
-/// primitivesOrigin: Primitives::origin; sampleShift: sampleOffset(). Numbers are split so that hi + lo carries at least
-/// the double's first 36 bits.
+/// primitivesOrigin: Primitives::origin; sampleShift: sampleOffset(). Numbers are split so that hi + lo
+/// carries at least the double's first 36 bits.
 f32::ViewBlock makeViewBlock(const View& view, const glm::dvec3& primitivesOrigin, const Tile& tile,
                              glm::vec2 sampleShift);
 

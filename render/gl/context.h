@@ -1,6 +1,6 @@
 #pragma once
-// An OpenGL 4.5 core context without a window. libEGL and libOSMesa are opened at run time, so one binary runs
-// where either is missing. The window's context lives in app/viewer.
+// An OpenGL 4.5 core context without a window. libEGL and libOSMesa are opened at run time, so one binary
+// runs where either is missing. The window's context lives in app/viewer.
 
 #include <cstdint>
 #include <memory>
@@ -20,7 +20,7 @@ enum class Backend : std::uint8_t {
 struct BackendReport {
   std::string name;  ///< "EGL device 0", "EGL surfaceless", "OSMesa", "window"
   bool works = false;
-  std::string vendor, renderer, glVersion, glslVersion;  ///< if it works
+  std::string vendor, renderer, glVersion, glslVersion;   ///< if it works
   std::vector<std::pair<std::string, long long>> limits;  ///< GL_MAX_... without the prefix, that matter here
   std::string reason, remedy;                             ///< if it does not work
 };
@@ -31,7 +31,7 @@ class Context {
   virtual ~Context() = default;
   /// Throws GraphicsError: one line that names every way tried, why it failed, and the remedy.
   static std::unique_ptr<Context> create(Backend backend);
-  const std::string& name() const { return name_; }          ///< as BackendReport::name
+  const std::string& name() const { return name_; }              ///< as BackendReport::name
   const std::string& rendererName() const { return renderer_; }  ///< GL_RENDERER
 
  protected:

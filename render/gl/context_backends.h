@@ -15,12 +15,13 @@ using ProcAddress = void (*(*)(const char*))();
 class ContextMaker {
  public:
   virtual ~ContextMaker() = default;
-  /// A current context with its functions loaded; or nullptr with report.reason and report.remedy. Sets report.name.
+  /// A current context with its functions loaded; or nullptr with report.reason and report.remedy. Sets
+  /// report.name.
   virtual std::unique_ptr<Context> make(BackendReport& report) = 0;
 };
 
-/// EGL: every device that libEGL enumerates (hardware first), then the surfaceless platform. Where libEGL cannot be
-/// opened, one maker that says so.
+/// EGL: every device that libEGL enumerates (hardware first), then the surfaceless platform. Where libEGL
+/// cannot be opened, one maker that says so.
 std::vector<std::unique_ptr<ContextMaker>> eglMakers();
 std::unique_ptr<ContextMaker> osmesaMaker();
 

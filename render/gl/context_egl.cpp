@@ -57,7 +57,8 @@ struct Egl {
   }
   bool has(EGLDisplay display, std::string_view extension) const {
     const char* all = queryString(display, EGL_EXTENSIONS);
-    return all && (' ' + std::string(all) + ' ').find(' ' + std::string(extension) + ' ') != std::string::npos;
+    return all &&
+           (' ' + std::string(all) + ' ').find(' ' + std::string(extension) + ' ') != std::string::npos;
   }
   std::string lastError() const {
     std::array<char, 32> code{};
@@ -88,7 +89,8 @@ class EglContext : public Context {
     egl().makeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     if (context_ != EGL_NO_CONTEXT) egl().destroyContext(display_, context_);
     if (surface_ != EGL_NO_SURFACE) egl().destroySurface(display_, surface_);
-    // The display stays: eglTerminate would unload the driver, and drivers do not all survive being loaded again.
+    // The display stays: eglTerminate would unload the driver, and drivers do not all survive being loaded
+    // again.
   }
 
   // Returns why it failed, or nothing.
@@ -97,15 +99,20 @@ class EglContext : public Context {
     const bool surfaceless = egl().has(display_, "EGL_KHR_surfaceless_context");
     EGLConfig config = nullptr;  // EGL_NO_CONFIG_KHR
     if (!surfaceless || !egl().has(display_, "EGL_KHR_no_config_context")) {
-      const EGLint wanted[] = {EGL_SURFACE_TYPE, surfaceless ? 0 : EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT,
-                               EGL_NONE};
+      const EGLint wanted[] = {EGL_SURFACE_TYPE, surfaceless ? 0 : EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE,
+                               EGL_OPENGL_BIT, EGL_NONE};
       EGLint count = 0;
       if (!egl().chooseConfig(display_, wanted, &config, 1, &count) || count == 0) {
         return "it has no configuration for OpenGL";
       }
     }
-    const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5,
-                                 EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+    const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                                 4,
+                                 EGL_CONTEXT_MINOR_VERSION,
+                                 5,
+                                 EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                 EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                 EGL_NONE};
     context_ = egl().createContext(display_, config, EGL_NO_CONTEXT, attributes);
     if (context_ == EGL_NO_CONTEXT) return "it makes no OpenGL 4.5 core context (" + egl().lastError() + ")";
     if (!surfaceless) {
@@ -156,7 +163,8 @@ class EglMaker : public ContextMaker {
 // Says why there is nothing to try.
 class UnavailableMaker : public ContextMaker {
  public:
-  UnavailableMaker(std::string name, std::string reason) : name_(std::move(name)), reason_(std::move(reason)) {}
+  UnavailableMaker(std::string name, std::string reason)
+      : name_(std::move(name)), reason_(std::move(reason)) {}
   std::unique_ptr<Context> make(BackendReport& report) override {
     report.name = name_;
     report.reason = reason_;
@@ -177,7 +185,8 @@ std::vector<EGLDeviceEXT> devicesHardwareFirst() {
   std::stable_partition(devices.begin(), devices.end(), [](EGLDeviceEXT device) {
     const char* extensions =
         egl().queryDeviceString ? egl().queryDeviceString(device, EGL_EXTENSIONS) : nullptr;
-    return !extensions || std::string_view(extensions).find("EGL_MESA_device_software") == std::string_view::npos;
+    return !extensions ||
+           std::string_view(extensions).find("EGL_MESA_device_software") == std::string_view::npos;
   });
   return devices;
 }

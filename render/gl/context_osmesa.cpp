@@ -1,6 +1,6 @@
-// OSMesa: Mesa's software renderer without any window system. Removed from Mesa 25.1 and later, so it is opened at run
-// time; its few declarations are repeated here from its documented interface (docs.mesa3d.org, OSMesa) instead of
-// requiring a header that new systems lack.
+// OSMesa: Mesa's software renderer without any window system. Removed from Mesa 25.1 and later, so it is
+// opened at run time; its few declarations are repeated here from its documented interface (docs.mesa3d.org,
+// OSMesa) instead of requiring a header that new systems lack.
 
 #include <array>
 
@@ -61,8 +61,17 @@ class OsmesaMaker : public ContextMaker {
       report.reason = "the library lacks functions of OSMesa 11.2 or later";
       return nullptr;
     }
-    const int attributes[] = {kOsmesaFormat, kOsmesaRgba, kOsmesaDepthBits, 24, kOsmesaProfile, kOsmesaCoreProfile,
-                              kOsmesaMajor,  4,           kOsmesaMinor,     5,  0};
+    const int attributes[] = {kOsmesaFormat,
+                              kOsmesaRgba,
+                              kOsmesaDepthBits,
+                              24,
+                              kOsmesaProfile,
+                              kOsmesaCoreProfile,
+                              kOsmesaMajor,
+                              4,
+                              kOsmesaMinor,
+                              5,
+                              0};
     OsmesaContext handle = api.createContextAttribs(attributes, nullptr);
     if (!handle) {
       report.reason = "it makes no OpenGL 4.5 core context";
@@ -82,6 +91,8 @@ class OsmesaMaker : public ContextMaker {
 
 }  // namespace
 
-std::unique_ptr<ContextMaker> osmesaMaker() { return std::make_unique<OsmesaMaker>(); }
+std::unique_ptr<ContextMaker> osmesaMaker() {
+  return std::make_unique<OsmesaMaker>();
+}
 
 }  // namespace meniscus::gl

@@ -14,9 +14,12 @@ std::vector<std::string>& messages() {
   return collected;
 }
 
-void GLAD_API_PTR collect(GLenum, GLenum type, GLuint, GLenum, GLsizei length, const GLchar* text, const void*) {
-  if (type == GL_DEBUG_TYPE_OTHER || type == GL_DEBUG_TYPE_PERFORMANCE || type == GL_DEBUG_TYPE_MARKER) return;
-  messages().emplace_back(text, length >= 0 ? static_cast<std::size_t>(length) : std::char_traits<char>::length(text));
+void GLAD_API_PTR collect(GLenum, GLenum type, GLuint, GLenum, GLsizei length, const GLchar* text,
+                          const void*) {
+  if (type == GL_DEBUG_TYPE_OTHER || type == GL_DEBUG_TYPE_PERFORMANCE || type == GL_DEBUG_TYPE_MARKER)
+    return;
+  messages().emplace_back(
+      text, length >= 0 ? static_cast<std::size_t>(length) : std::char_traits<char>::length(text));
 }
 
 }  // namespace

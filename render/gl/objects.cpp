@@ -17,13 +17,22 @@ struct FormatInfo {
 
 FormatInfo infoOf(TextureFormat format) {
   switch (format) {
-    case TextureFormat::rgba8: return {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, 4};
-    case TextureFormat::rgba16: return {GL_RGBA16, GL_RGBA, GL_UNSIGNED_SHORT, 8};
-    case TextureFormat::rgba32f: return {GL_RGBA32F, GL_RGBA, GL_FLOAT, 16};
-    case TextureFormat::rg16: return {GL_RG16, GL_RG, GL_UNSIGNED_SHORT, 4};
-    case TextureFormat::r32ui: return {GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, 4};
-    case TextureFormat::r32f: return {GL_R32F, GL_RED, GL_FLOAT, 4};
-    case TextureFormat::depth32f: return {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, 4};
+    case TextureFormat::rgba8:
+      return {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, 4};
+    case TextureFormat::rgba16:
+      return {GL_RGBA16, GL_RGBA, GL_UNSIGNED_SHORT, 8};
+    case TextureFormat::rgba32f:
+      return {GL_RGBA32F, GL_RGBA, GL_FLOAT, 16};
+    case TextureFormat::rg16:
+      return {GL_RG16, GL_RG, GL_UNSIGNED_SHORT, 4};
+    case TextureFormat::r16:
+      return {GL_R16, GL_RED, GL_UNSIGNED_SHORT, 2};
+    case TextureFormat::r32ui:
+      return {GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, 4};
+    case TextureFormat::r32f:
+      return {GL_R32F, GL_RED, GL_FLOAT, 4};
+    case TextureFormat::depth32f:
+      return {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, 4};
   }
   return {};
 }
@@ -32,8 +41,8 @@ void throwIfOutOfMemory(const char* what, std::uint64_t bytes) {
   bool full = false;
   while (const GLenum error = glGetError()) full = full || error == GL_OUT_OF_MEMORY;
   if (full) {
-    throw GraphicsError("the driver has no memory for " + std::string(what) + " of " + std::to_string(bytes >> 20) +
-                        " MiB; draw fewer atoms or a smaller picture");
+    throw GraphicsError("the driver has no memory for " + std::string(what) + " of " +
+                        std::to_string(bytes >> 20) + " MiB; draw fewer atoms or a smaller picture");
   }
 }
 
@@ -42,11 +51,21 @@ void throwIfOutOfMemory(const char* what, std::uint64_t bytes) {
 void Object::reset() {
   if (name_ == 0) return;
   switch (kind_) {
-    case ObjectKind::buffer: glDeleteBuffers(1, &name_); break;
-    case ObjectKind::texture: glDeleteTextures(1, &name_); break;
-    case ObjectKind::framebuffer: glDeleteFramebuffers(1, &name_); break;
-    case ObjectKind::vertexArray: glDeleteVertexArrays(1, &name_); break;
-    case ObjectKind::program: glDeleteProgram(name_); break;
+    case ObjectKind::buffer:
+      glDeleteBuffers(1, &name_);
+      break;
+    case ObjectKind::texture:
+      glDeleteTextures(1, &name_);
+      break;
+    case ObjectKind::framebuffer:
+      glDeleteFramebuffers(1, &name_);
+      break;
+    case ObjectKind::vertexArray:
+      glDeleteVertexArrays(1, &name_);
+      break;
+    case ObjectKind::program:
+      glDeleteProgram(name_);
+      break;
   }
   name_ = 0;
 }
@@ -73,7 +92,9 @@ void Buffer::update(const void* data) {
   glNamedBufferSubData(object.name(), 0, static_cast<GLsizeiptr>(bytes), data);
 }
 
-int bytesPerTexel(TextureFormat format) { return infoOf(format).bytes; }
+int bytesPerTexel(TextureFormat format) {
+  return infoOf(format).bytes;
+}
 
 Texture Texture::make(const TextureDesc& desc) {
   GLuint name = 0;

@@ -1,6 +1,6 @@
 #pragma once
-// OpenGL objects that delete themselves. No GL type or name appears here; a context must be current wherever one is
-// made, used or destroyed.
+// OpenGL objects that delete themselves. No GL type or name appears here; a context must be current wherever
+// one is made, used or destroyed.
 
 #include <cstdint>
 #include <string>
@@ -46,7 +46,7 @@ struct Buffer {
   void update(const void* data);
 };
 
-enum class TextureFormat : std::uint8_t { rgba8, rgba16, rgba32f, rg16, r32ui, r32f, depth32f };
+enum class TextureFormat : std::uint8_t { rgba8, rgba16, rgba32f, rg16, r16, r32ui, r32f, depth32f };
 
 int bytesPerTexel(TextureFormat format);
 
@@ -62,8 +62,8 @@ struct Texture {
 
   static Texture make(const TextureDesc& desc);
   std::uint64_t bytes() const;
-  /// Reads the lower left width x height texels, rows from the bottom, `rowTexels` apart in memory, in the format's own
-  /// component types. `out` must have room.
+  /// Reads the lower left width x height texels, rows from the bottom, `rowTexels` apart in memory, in the
+  /// format's own component types. `out` must have room.
   void read(int width, int height, int rowTexels, void* out) const;
 };
 

@@ -16,6 +16,8 @@ SharedLibrary::SharedLibrary(const char* environmentVariable, std::vector<const 
   }
 }
 
-void* SharedLibrary::symbol(const char* name) const { return handle_ ? dlsym(handle_, name) : nullptr; }
+void* SharedLibrary::symbol(const char* name) const {
+  return handle_ ? dlsym(handle_, name) : nullptr;
+}
 
 }  // namespace meniscus::gl

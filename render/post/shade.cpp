@@ -23,13 +23,17 @@ glm::vec4 towardsLight(const DirectionalLight& light) {
   return glm::vec4(glm::dvec4(towards, light.intensity));
 }
 
-double linearFromSrgb(double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); }
+double linearFromSrgb(double c) {
+  return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+}
 
 }  // namespace
 
 glm::vec4 backdrop(const Background& background) {
   if (background.transparent) return glm::vec4(0.0f);
-  const auto channel = [&](int shift) { return linearFromSrgb(((background.color >> shift) & 0xFF) / 255.0); };
+  const auto channel = [&](int shift) {
+    return linearFromSrgb(((background.color >> shift) & 0xFF) / 255.0);
+  };
   return glm::vec4(glm::dvec4(channel(16), channel(8), channel(0), 1.0));
 }
 
@@ -37,21 +41,29 @@ void ShadeUniforms::set(const ShadeSettings& settings) {
   if (!buffer_.object) buffer_ = gl::Buffer::updatable(sizeof(ShadeBlock));
   const Lighting& l = settings.lighting;
   const ShadeBlock block{towardsLight(l.key), towardsLight(l.fill),
-                         glm::vec4(glm::dvec4(l.ambient, l.specular, l.shininess, 0.0)), backdrop(settings.background)};
+                         glm::vec4(glm::dvec4(l.ambient, l.specular, l.shininess, 0.0)),
+                         backdrop(settings.background)};
   buffer_.update(&block);
 }
 
-void addShade(FrameGraph& graph, const ShadeSettings& settings, const ShadeUniforms& uniforms, ShaderLibrary& shaders,
-              const GBufferRefs& gbuffer, TextureRef target) {
-  graph.addPass("shade", {gbuffer.albedo, gbuffer.normal}, {{target, 0}},
-                [settings, &uniforms, &shaders, gbuffer](const PassContext& context) {
+void addShade(FrameGraph& graph, const ShadeSettings& settings, const ShadeUniforms& uniforms,
+              ShaderLibrary& shaders, const GBufferRefs& gbuffer, const LightRefs& light, TextureRef target) {
+  std::vector<TextureRef> reads{gbuffer.albedo, gbuffer.normal};
+  if (light.visibility.valid()) reads.push_back(light.visibility);
+  graph.addPass("shade", reads, {{target, 0}},
+                [settings, &uniforms, &shaders, gbuffer, light](const PassContext& context) {
                   ShaderFlags flags;
                   if (settings.final) flags.insert("FINAL");
                   if (settings.final && settings.encodeSrgb) flags.insert("ENCODE_SRGB");
+                  if (light.visibility.valid()) {
+                    flags.insert("SHADOW");
+                    glBindTextureUnit(2, context.texture(light.visibility).object.name());
+                  }
                   glBindTextureUnit(0, context.texture(gbuffer.albedo).object.name());
                   glBindTextureUnit(1, context.texture(gbuffer.normal).object.name());
                   glBindBufferBase(GL_UNIFORM_BUFFER, 1, uniforms.name());
-                  drawFullscreen(shaders.program("post/fullscreen.vert", "post/shade.frag", flags), !settings.final);
+                  drawFullscreen(shaders.program("post/fullscreen.vert", "post/shade.frag", flags),
+                                 !settings.final);
                 });
 }
 

@@ -27,9 +27,14 @@ class ShadeUniforms {
   gl::Buffer buffer_;
 };
 
+/// What other passes found out about the light, per pixel; those that are not valid take no part.
+struct LightRefs {
+  TextureRef visibility;  ///< share of the key light that arrives (shadow.h)
+};
+
 /// Adds the pass; it draws into `target`, an imported texture.
-void addShade(FrameGraph& graph, const ShadeSettings& settings, const ShadeUniforms& uniforms, ShaderLibrary& shaders,
-              const GBufferRefs& gbuffer, TextureRef target);
+void addShade(FrameGraph& graph, const ShadeSettings& settings, const ShadeUniforms& uniforms,
+              ShaderLibrary& shaders, const GBufferRefs& gbuffer, const LightRefs& light, TextureRef target);
 
 /// Background as the shaders take it: premultiplied linear light, transparent = all zero.
 glm::vec4 backdrop(const Background& background);

@@ -16,8 +16,8 @@ layout(location = 2) out uint oId;
 layout(location = 3) out float oDistance;
 #endif
 
-// depth: depthValue() of the point; normal: unit, view space, towards the viewer; color: 0xRRGGBB sRGB; id: not 0;
-// distance: along the unit ray [Å].
+// depth: depthValue() of the point; normal: unit, view space, towards the viewer; color: 0xRRGGBB sRGB; id:
+// not 0; distance: along the unit ray [Å].
 void writeSurface(float depth, vec3 normal, uint color, uint id, float distance) {
   gl_FragDepth = depth;
 #ifdef ALBEDO

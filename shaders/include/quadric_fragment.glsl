@@ -7,7 +7,8 @@ struct SurfacePoint {
   float z;        // view space
 };
 
-// The chord's entry, or its exit seen from inside where the entry lies before the near plane; discards the rest.
+// The chord's entry, or its exit seen from inside where the entry lies before the near plane; discards the
+// rest.
 SurfacePoint visibleEnd(Chord chord, float centerZ) {
   if (!chord.hit) discard;
   SurfacePoint s;

@@ -4,4 +4,6 @@
 #include "shared/view_block.glsl"
 #include "shared/projection.glsl"
 
-layout(std140, binding = 0) uniform ViewUniforms { ViewBlock uView; };
+layout(std140, binding = 0) uniform ViewUniforms {
+  ViewBlock uView;
+};

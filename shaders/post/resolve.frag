@@ -13,4 +13,6 @@ layout(std140, binding = 1) uniform ResolveUniforms {
 
 layout(location = 0) out vec4 oColor;
 
-void main() { oColor = pictureValue(texelFetch(tSum, ivec2(gl_FragCoord.xy), 0) * uShare.x, uBackdrop); }
+void main() {
+  oColor = pictureValue(texelFetch(tSum, ivec2(gl_FragCoord.xy), 0) * uShare.x, uBackdrop);
+}

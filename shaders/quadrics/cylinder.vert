@@ -1,13 +1,13 @@
 #version 450 core
 // flags: DISTANCE
-// One instance per capped cylinder: a rectangle along its projected axis that tightly bounds both end discs, whose
-// convex hull the cylinder is (Sigg et al. 2006, §3.2: a box per cap; turned along the axis here, which covers about
-// half as many pixels).
+// One instance per capped cylinder: a rectangle along its projected axis that tightly bounds both end discs,
+// whose convex hull the cylinder is (Sigg et al. 2006, §3.2: a box per cap; turned along the axis here, which
+// covers about half as many pixels).
 #include "include/view.glsl"
 #include "include/quadric_vertex.glsl"
 
-layout(location = 0) in vec4 aEndRadius;  // end a, relative to the primitives' origin; radius
-layout(location = 1) in vec3 aOtherEnd;   // end b
+layout(location = 0) in vec4 aEndRadius;   // end a, relative to the primitives' origin; radius
+layout(location = 1) in vec3 aOtherEnd;    // end b
 layout(location = 2) in uvec4 aColorsIds;  // colour a, b; id a, b
 
 layout(location = 0) flat out vec4 vPixel;  // projected centre: hi xy, lo xy
@@ -19,8 +19,10 @@ layout(location = 4) flat out uvec4 vColorsIds;
 layout(location = 5) flat out vec2 vRange;
 #endif
 
-// Bounds of both end discs along the screen direction (c, s), as slopes from the projected centre; false: unbounded.
-bool discBounds(ProjectedCenter center, vec3 axis, float halfLength, float radius, vec2 direction, out vec2 bounds) {
+// Bounds of both end discs along the screen direction (c, s), as slopes from the projected centre; false:
+// unbounded.
+bool discBounds(ProjectedCenter center, vec3 axis, float halfLength, float radius, vec2 direction,
+                out vec2 bounds) {
   float axisAlong = dot(axis.xy, direction);
   float slope = dot(center.view.xy, direction) / center.depth;
   bool bounded = true;
@@ -75,15 +77,17 @@ void main() {
     gl_Position = wholeTarget(gl_VertexID);
     return;
   }
-  // A turned rectangle cannot be cut to the target corner by corner; one far larger than it is given up instead.
+  // A turned rectangle cannot be cut to the target corner by corner; one far larger than it is given up
+  // instead.
   vec2 span = vec2(boundsAlong.y - boundsAlong.x, boundsAcross.y - boundsAcross.x) / uView.scale.x;
   if (max(span.x, span.y) > 8.0 * max(uView.tile.z, uView.tile.w)) {
     gl_Position = wholeTarget(gl_VertexID);
     return;
   }
   vec2 corner = cornerOf(gl_VertexID);
-  vec2 turned = mix(vec2(boundsAlong.x, boundsAcross.x), vec2(boundsAlong.y, boundsAcross.y), corner) / uView.scale.x +
-                (corner * 2.0 - 1.0) * kPadding;
+  vec2 turned =
+      mix(vec2(boundsAlong.x, boundsAcross.x), vec2(boundsAlong.y, boundsAcross.y), corner) / uView.scale.x +
+      (corner * 2.0 - 1.0) * kPadding;
   vec2 pixel = targetPixel(center, turned.x * direction + turned.y * across);
   gl_Position = quadPosition(pixel, center.view.z + reach);
 }

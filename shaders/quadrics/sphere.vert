@@ -7,9 +7,9 @@
 layout(location = 0) in vec4 aCenterRadius;  // relative to the primitives' origin
 layout(location = 1) in uvec2 aColorId;
 
-layout(location = 0) flat out vec4 vPixel;   // projected centre: hi xy, lo xy
-layout(location = 1) flat out vec4 vView;    // view-space centre, radius
-layout(location = 2) flat out vec2 vDepth;   // depth; 1 if the ray is taken from the eye
+layout(location = 0) flat out vec4 vPixel;  // projected centre: hi xy, lo xy
+layout(location = 1) flat out vec4 vView;   // view-space centre, radius
+layout(location = 2) flat out vec2 vDepth;  // depth; 1 if the ray is taken from the eye
 layout(location = 3) flat out uvec2 vColorId;
 #ifdef DISTANCE
 layout(location = 4) flat out vec2 vRange;
@@ -40,7 +40,8 @@ void main() {
     return;
   }
   vec2 corner = cornerOf(gl_VertexID);
-  vec2 offset = mix(vec2(x.low, y.low), vec2(x.high, y.high), corner) / uView.scale.x + (corner * 2.0 - 1.0) * kPadding;
+  vec2 offset =
+      mix(vec2(x.low, y.low), vec2(x.high, y.high), corner) / uView.scale.x + (corner * 2.0 - 1.0) * kPadding;
   // What lies beyond the target is cut off here, so that no driver has to clip a quad of a million pixels.
   vec2 pixel = clamp(targetPixel(center, offset), vec2(-1.0), uView.tile.zw + 1.0);
   gl_Position = quadPosition(pixel, center.view.z + radius);

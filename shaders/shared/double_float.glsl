@@ -1,9 +1,9 @@
-// Numbers as an unevaluated sum of two floating-point values, hi + lo with |lo| <= ulp(hi) / 2: about 48 bits from
-// float32. Used where float32 alone cancels: the projected centre of a primitive seen from thousands of ångström
-// away (projection.glsl), and a distance that is stored as one float32.
+// Numbers as an unevaluated sum of two floating-point values, hi + lo with |lo| <= ulp(hi) / 2: about 48 bits
+// from float32. Used where float32 alone cancels: the projected centre of a primitive seen from thousands of
+// ångström away (projection.glsl), and a distance that is stored as one float32.
 //
-// Dekker, Numerische Mathematik 18 (1971), doi 10.1007/BF01397083; Knuth, TAOCP 2, 4.2.2. PRECISE keeps compilers
-// from reassociating; C++ is compiled without contraction (CMakeLists.txt).
+// Dekker, Numerische Mathematik 18 (1971), doi 10.1007/BF01397083; Knuth, TAOCP 2, 4.2.2. PRECISE keeps
+// compilers from reassociating; C++ is compiled without contraction (CMakeLists.txt).
 
 struct Split {
   real hi;
@@ -56,7 +56,9 @@ FN Split addSplit(Split a, Split b) {
   return twoSum(s.hi, lo);
 }
 
-FN Split negateSplit(Split a) { return makeSplit(-a.hi, -a.lo); }
+FN Split negateSplit(Split a) {
+  return makeSplit(-a.hi, -a.lo);
+}
 
 FN Split multiplySplit(Split a, Split b) {
   Split p = twoProduct(a.hi, b.hi);

@@ -1,7 +1,9 @@
-// Unit vectors as two numbers in [0, 1] (Cigolle et al., JCGT 3(2), 2014). 16-bit unsigned channels rather than
-// signed ones: the latter need not be renderable in OpenGL 4.5.
+// Unit vectors as two numbers in [0, 1] (Cigolle et al., JCGT 3(2), 2014). 16-bit unsigned channels rather
+// than signed ones: the latter need not be renderable in OpenGL 4.5.
 
-FN real awayFromZero(real x) { return x >= real(0) ? real(1) : real(-1); }
+FN real awayFromZero(real x) {
+  return x >= real(0) ? real(1) : real(-1);
+}
 
 FN vec2 encodeNormal(vec3 n) {
   real sum = abs(n.x) + abs(n.y) + abs(n.z);

@@ -1,10 +1,10 @@
-// From a primitive's centre to the pixel grid and back to a ray *relative to that centre*, without cancellation.
-// Needs double_float.glsl and view_block.glsl.
+// From a primitive's centre to the pixel grid and back to a ray *relative to that centre*, without
+// cancellation. Needs double_float.glsl and view_block.glsl.
 //
-// The textbook ray/sphere test subtracts numbers of the size of the camera distance and loses the sphere in their
-// rounding. Here the centre's pixel coordinates are known to about 48 bits, so the ray through a pixel passes the
-// centre at (pixel - projected centre) * (size of a pixel at that depth): small, and right to float32's relative
-// precision at any distance (MATH: docs/methods.md, "Quadrics").
+// The textbook ray/sphere test subtracts numbers of the size of the camera distance and loses the sphere in
+// their rounding. Here the centre's pixel coordinates are known to about 48 bits, so the ray through a pixel
+// passes the centre at (pixel - projected centre) * (size of a pixel at that depth): small, and right to
+// float32's relative precision at any distance (MATH: docs/methods.md, "Quadrics").
 
 struct ProjectedCenter {
   vec3 view;     // view-space position, rounded
@@ -13,9 +13,12 @@ struct ProjectedCenter {
   Split pixelY;
 };
 
-FN bool isPerspective(ViewBlock view) { return view.scale.z > real(0.5); }
+FN bool isPerspective(ViewBlock view) {
+  return view.scale.z > real(0.5);
+}
 
-// row . c + translation, where cHi has at most 12 significant bits per component, as rowHi has: their products are exact.
+// row . c + translation, where cHi has at most 12 significant bits per component, as rowHi has: their
+// products are exact.
 FN Split dotRow(vec4 rowHi, vec4 rowLo, vec3 cHi, vec3 cLo) {
   Split xy = twoSum(rowHi.x * cHi.x, rowHi.y * cHi.y);
   Split xyz = twoSum(xy.hi, rowHi.z * cHi.z);
@@ -41,7 +44,8 @@ FN Split depthOf(ViewBlock view, Split z) {
   return twoSum(depth.hi, rest);
 }
 
-// View-space position of cHi + cLo, given relative to the primitives' origin; x and y in pixels (at unit depth).
+// View-space position of cHi + cLo, given relative to the primitives' origin; x and y in pixels (at unit
+// depth).
 struct RowProducts {
   Split x;
   Split y;
@@ -94,9 +98,11 @@ FN Split centerRange(ViewBlock view, vec3 cHi, vec3 cLo) {
 // A direction in view space.
 FN vec3 turn(ViewBlock view, vec3 v) {
   return vec3((dot(vec3(view.xRowHi.x, view.xRowHi.y, view.xRowHi.z), v) +
-               dot(vec3(view.xRowLo.x, view.xRowLo.y, view.xRowLo.z), v)) * view.scale.x,
+               dot(vec3(view.xRowLo.x, view.xRowLo.y, view.xRowLo.z), v)) *
+                  view.scale.x,
               (dot(vec3(view.yRowHi.x, view.yRowHi.y, view.yRowHi.z), v) +
-               dot(vec3(view.yRowLo.x, view.yRowLo.y, view.yRowLo.z), v)) * view.scale.x,
+               dot(vec3(view.yRowLo.x, view.yRowLo.y, view.yRowLo.z), v)) *
+                  view.scale.x,
               dot(vec3(view.zRowHi.x, view.zRowHi.y, view.zRowHi.z), v) +
                   dot(vec3(view.zRowLo.x, view.zRowLo.y, view.zRowLo.z), v));
 }
@@ -104,19 +110,23 @@ FN vec3 turn(ViewBlock view, vec3 v) {
 // Unit direction of the ray through a pixel.
 FN vec3 rayDirection(ViewBlock view, vec2 pixel) {
   if (!isPerspective(view)) return vec3(real(0), real(0), real(-1));
-  return normalize(vec3((pixel.x - view.center.x) * view.scale.x, (pixel.y - view.center.y) * view.scale.x, real(-1)));
+  return normalize(
+      vec3((pixel.x - view.center.x) * view.scale.x, (pixel.y - view.center.y) * view.scale.x, real(-1)));
 }
 
-// Whether a ray is better taken from the eye than from the plane of the primitive's centre: close by, or behind.
+// Whether a ray is better taken from the eye than from the plane of the primitive's centre: close by, or
+// behind.
 FN bool nearEye(ViewBlock view, real depth, real radius) {
   return isPerspective(view) && depth < real(2) * radius;
 }
 
 // A point of the ray through `pixel`, relative to the primitive's centre; for nearEye() it is the eye itself.
-FN vec3 rayPoint(ViewBlock view, vec2 pixel, vec2 pixelHi, vec2 pixelLo, vec3 centerView, real depth, bool fromEye) {
+FN vec3 rayPoint(ViewBlock view, vec2 pixel, vec2 pixelHi, vec2 pixelLo, vec3 centerView, real depth,
+                 bool fromEye) {
   if (fromEye) return vec3(-centerView.x, -centerView.y, view.depth.x - centerView.z);
   real perPixel = depth * view.scale.x;
-  return vec3(perPixel * ((pixel.x - pixelHi.x) - pixelLo.x), perPixel * ((pixel.y - pixelHi.y) - pixelLo.y), real(0));
+  return vec3(perPixel * ((pixel.x - pixelHi.x) - pixelLo.x), perPixel * ((pixel.y - pixelHi.y) - pixelLo.y),
+              real(0));
 }
 
 // Value for a reversed-z depth buffer of a point at view-space z: 1 on the near plane, 0 on the far plane.
@@ -124,6 +134,17 @@ FN real depthValue(ViewBlock view, real z) {
   real aboveFar = (z - view.depth.w) * view.depthMap.x;
   if (isPerspective(view)) return aboveFar / (view.depth.x - z);
   return aboveFar;
+}
+
+// View-space point of a pixel whose depth buffer holds `value` (> 0): the inverse of depthValue.
+FN vec3 viewPoint(ViewBlock view, vec2 pixel, real value) {
+  real factor = view.depthMap.x;
+  real x = (pixel.x - view.center.x) * view.scale.x;
+  real y = (pixel.y - view.center.y) * view.scale.x;
+  if (!isPerspective(view)) return vec3(x, y, view.depth.w + value / factor);
+  real toFar = view.depth.x - view.depth.w;
+  real depth = toFar * factor / (value + factor);
+  return vec3(x * depth, y * depth, view.depth.w + value * toFar / (value + factor));
 }
 
 // Distance along the unit ray from its origin to a point `hit` relative to the centre, rounded once.
@@ -135,12 +156,12 @@ FN real rayDistance(ViewBlock view, vec3 centerView, Split range, vec3 hit) {
   return range.hi + (range.lo + (total > real(0) ? squares / total : real(0)));
 }
 
-// Bounds of a projected disc or sphere along screen direction (cosA, sinA), relative to its projected centre, as
-// slopes (multiply by 1 / pixel size). (position, axis) in view space turned so that x is that direction; axis is the
-// disc's unit normal, or zero for a sphere.
+// Bounds of a projected disc or sphere along screen direction (cosA, sinA), relative to its projected centre,
+// as slopes (multiply by 1 / pixel size). (position, axis) in view space turned so that x is that direction;
+// axis is the disc's unit normal, or zero for a sphere.
 //
-// The two planes through the eye that touch the quadric, Sigg et al. 2006 eq. (4) and (5) with the unknown measured
-// from the projected centre instead of from 0, which removes the cancellation between the two roots.
+// The two planes through the eye that touch the quadric, Sigg et al. 2006 eq. (4) and (5) with the unknown
+// measured from the projected centre instead of from 0, which removes the cancellation between the two roots.
 struct Extent {
   real low;
   real high;

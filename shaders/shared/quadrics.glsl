@@ -1,7 +1,8 @@
 // Where a ray meets a sphere or a capped cylinder, everything relative to the primitive's own centre.
-// Sigg et al., GPU-Based Ray-Casting of Quadratic Surfaces, PBG 2006, §3.3, with the intersection in eye space
-// instead of their eq. (7), which cancels for small, far quadrics: the discriminant is r^2 - |closest approach|^2
-// (Haines, Günther, Akenine-Möller, Ray Tracing Gems 2019, ch. 7, doi 10.1007/978-1-4842-4427-2_7).
+// Sigg et al., GPU-Based Ray-Casting of Quadratic Surfaces, PBG 2006, §3.3, with the intersection in eye
+// space instead of their eq. (7), which cancels for small, far quadrics: the discriminant is r^2 - |closest
+// approach|^2 (Haines, Günther, Akenine-Möller, Ray Tracing Gems 2019, ch. 7,
+// doi 10.1007/978-1-4842-4427-2_7).
 
 // The part of a ray inside a convex solid: parameters measured from the given ray point, normals outward.
 struct Chord {

@@ -1,0 +1,18 @@
+#pragma once
+// The view from a light: what a shadow map is drawn with.
+
+#include "core/scene.h"
+#include "core/view.h"
+
+namespace meniscus {
+
+/// An orthographic view along `light` (given in the axes of `camera`) of everything in `bounds` that can cast
+/// a shadow on what `camera` sees, with texels of `texelSize` [Å] or as much larger as `maxSize` demands.
+/// `margin` [Å] is added around.
+View makeLightView(const View& camera, const DirectionalLight& light, const BoundingSphere& bounds,
+                   double texelSize, int maxSize, double margin);
+
+/// Size of a pixel of `view` [Å] at the nearest visible part of `bounds`.
+double pixelFootprint(const View& view, const BoundingSphere& bounds);
+
+}  // namespace meniscus

@@ -1,0 +1,87 @@
+#include "render/post/shadow.h"
+
+#include <glad/gl.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <glm/vec4.hpp>
+
+#include "render/post/fullscreen.h"
+
+namespace meniscus {
+
+namespace {
+
+constexpr double kGoldenAngle = 2.399963229728653;
+
+// Layout of ShadowUniforms in shaders/post/shadow.frag.
+struct ShadowBlock {
+  glm::vec4 rowX, rowY, rowZ, map, filter;
+  std::array<glm::vec2, kMaxShadowSamples> offsets;
+};
+
+double radicalInverse2(unsigned i) {
+  double value = 0;
+  for (double digit = 0.5; i != 0; i >>= 1, digit *= 0.5) value += digit * (i & 1u);
+  return value;
+}
+
+// Spread over the unit disc so that any first few are, too: the probes are the first of them.
+glm::vec2 discOffset(int index, int count, double turn) {
+  const double radius =
+      std::sqrt(std::fmod(radicalInverse2(static_cast<unsigned>(index)) + 0.5 / count, 1.0));
+  const double angle = index * kGoldenAngle + turn;
+  return glm::vec2(glm::dvec2(std::cos(angle), std::sin(angle)) * radius);
+}
+
+}  // namespace
+
+void ShadowUniforms::set(const ShadowSettings& settings, const View& camera, const ShadowMap& map, int sample,
+                         int sampleCount) {
+  if (!buffer_.object) buffer_ = gl::Buffer::updatable(sizeof(ShadowBlock));
+  const View& light = map.light;
+  const glm::dmat3 rotation = light.rotation * glm::transpose(camera.rotation);
+  const glm::dvec3 shift = light.rotation * (camera.pivot - light.pivot);
+  const glm::dmat3 rows = glm::transpose(rotation);
+  const double perTexel = 1.0 / light.pixelSize;
+
+  ShadowBlock block{};
+  block.rowX = glm::vec4(glm::dvec4(rows[0], shift.x) * perTexel + glm::dvec4(0, 0, 0, light.center.x));
+  block.rowY = glm::vec4(glm::dvec4(rows[1], shift.y) * perTexel + glm::dvec4(0, 0, 0, light.center.y));
+  block.rowZ = glm::vec4(glm::dvec4(rows[2], shift.z - light.farZ));
+  block.map =
+      glm::vec4(glm::dvec4(light.size.width, light.size.height, light.nearZ - light.farZ, light.pixelSize));
+  // At least a texel: a narrower filter would show the map's steps.
+  const double radius = std::max(0.5 * settings.penumbra * perTexel, 1.0);
+  block.filter = glm::vec4(glm::dvec4(radius, settings.samples, settings.probes, 0.0));
+  const double turn =
+      sampleCount > 1 ? sample * kGoldenAngle / std::sqrt(static_cast<double>(sampleCount)) : 0;
+  for (int i = 0; i < settings.samples; ++i) {
+    block.offsets[static_cast<std::size_t>(i)] = discOffset(i, settings.samples, turn);
+  }
+  buffer_.update(&block);
+}
+
+TextureRef addShadow(FrameGraph& graph, const ShadowSettings& settings, const ShadowMap& map,
+                     const ShadowUniforms& uniforms, ShaderLibrary& shaders, const GBufferRefs& gbuffer,
+                     int width, int height) {
+  const TextureRef mapRef = graph.import("shadow map", *map.depth, Clear::none);
+  const TextureRef visibility =
+      graph.create("visibility", {gl::TextureFormat::r16, width, height}, Clear::none);
+  graph.addPass("shadow", {gbuffer.depth, gbuffer.normal, mapRef}, {{visibility, 0}},
+                [&uniforms, &shaders, gbuffer, mapRef,
+                 soft = settings.mode == ShadowMode::soft](const PassContext& context) {
+                  glBindTextureUnit(0, context.texture(gbuffer.depth).object.name());
+                  glBindTextureUnit(1, context.texture(gbuffer.normal).object.name());
+                  glBindTextureUnit(2, context.texture(mapRef).object.name());
+                  glBindBufferBase(GL_UNIFORM_BUFFER, 1, uniforms.name());
+                  ShaderFlags flags;
+                  if (soft) flags.insert("SOFT");
+                  drawFullscreen(shaders.program("post/fullscreen.vert", "post/shadow.frag", flags));
+                });
+  return visibility;
+}
+
+}  // namespace meniscus

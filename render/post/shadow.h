@@ -1,0 +1,38 @@
+#pragma once
+// Shadows of the key light. W. Reeves, D. Salesin, R. Cook, Rendering Antialiased Shadows with Depth Maps,
+// SIGGRAPH 1987, doi 10.1145/37402.37435; adaptive number of samples after Sigg et al. 2006, §4. The bias is
+// not a constant: see shaders/post/shadow.frag.
+
+#include "core/render_settings.h"
+#include "core/view.h"
+#include "render/frame_graph.h"
+#include "render/gbuffer.h"
+#include "render/shader_library.h"
+
+namespace meniscus {
+
+/// A drawn shadow map and the view it was drawn with.
+struct ShadowMap {
+  View light;
+  const gl::Texture* depth = nullptr;
+};
+
+/// A buffer for the pass's uniforms, which outlives the frames.
+class ShadowUniforms {
+ public:
+  /// Makes the block current for the next frames. `sample` of `sampleCount` rays per pixel turns the pattern,
+  /// so that all of them together see different texels.
+  void set(const ShadowSettings& settings, const View& camera, const ShadowMap& map, int sample,
+           int sampleCount);
+  unsigned name() const { return buffer_.object.name(); }
+
+ private:
+  gl::Buffer buffer_;
+};
+
+/// Adds the pass. Returns the share of the key light that arrives, per pixel (1 on the background).
+TextureRef addShadow(FrameGraph& graph, const ShadowSettings& settings, const ShadowMap& map,
+                     const ShadowUniforms& uniforms, ShaderLibrary& shaders, const GBufferRefs& gbuffer,
+                     int width, int height);
+
+}  // namespace meniscus
