@@ -57,6 +57,7 @@ class RenderRun {
   void renderFile(const std::string& file);
   Molecules readMolecules(const std::string& file);
   void showNotes(const std::string& file, const Logger& logger);
+  void requireMemory(const std::string& file, const Molecules& molecules) const;
   SceneObject objectFor(std::shared_ptr<const Molecule> molecule) const;
   Camera cameraFor(const std::string& file, const std::vector<SceneObject>& objects) const;
   void drawPicture(const std::string& file, const std::string& output, Scene scene);
@@ -114,6 +115,7 @@ void RenderRun::checkBeforeReading() const {
 
 void RenderRun::renderFile(const std::string& file) {
   const Molecules molecules = readMolecules(file);
+  requireMemory(file, molecules);
   std::vector<SceneObject> objects;
   for (const auto& molecule : molecules) objects.push_back(objectFor(molecule));
   Scene scene;
@@ -169,6 +171,21 @@ void RenderRun::showNotes(const std::string& file, const Logger& logger) {
   if (notes.size() > kMostNotes)
     std::fprintf(stderr, "meniscus: %s: note: ... and %zu more (meniscus info %s shows all)\n", file.c_str(),
                  notes.size() - kMostNotes, file.c_str());
+}
+
+// Copies are cheap to ask for, and a system short of memory ends the process without a word.
+void RenderRun::requireMemory(const std::string& file, const Molecules& molecules) const {
+  constexpr double kBytesPerAtom = 100;  // measured for spheres alone, 12 million atoms; with bonds it is 190
+  const double available = static_cast<double>(physicalMemoryBytes());
+  const glm::dvec3 copies(options_.replicate);
+  double atoms = 0;
+  for (const auto& molecule : molecules) atoms += static_cast<double>(molecule->atomCount());
+  const double needed = kBytesPerAtom * atoms * copies.x * copies.y * copies.z;
+  if (available == 0 || needed <= available) return;
+  throw InputError(
+      fmt::format("'{}': {:.0f} copies of {:.0f} atoms take {:.0f} GB of memory, more than there is; draw "
+                  "fewer copies or a part (--select)",
+                  file, copies.x * copies.y * copies.z, atoms, needed / 1e9));
 }
 
 SceneObject RenderRun::objectFor(std::shared_ptr<const Molecule> molecule) const {

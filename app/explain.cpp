@@ -54,7 +54,7 @@ void explainTimes(const RunReport& report, std::string& text) {
                                                   {"context", report.contextSeconds * 1000},
                                                   {"upload", report.render.uploadMs},
                                                   {"compile", report.render.compileMs},
-                                                  {"draw", report.render.drawMs},
+                                                  {"draw", drawMs(report)},
                                                   {"read back", report.render.readbackMs},
                                                   {"encode", report.encodeSeconds * 1000}};
   text += "\nTime\n";

@@ -1,6 +1,7 @@
-// What the process has used so far, from the operating system.
+// What the process has used so far, and what there is, from the operating system.
 
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <ctime>
 
@@ -22,6 +23,12 @@ void addProcessUsage(RunReport& report) {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   report.peakMemoryBytes = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+std::uint64_t physicalMemoryBytes() {
+  const long pages = sysconf(_SC_PHYS_PAGES), pageSize = sysconf(_SC_PAGESIZE);
+  return pages > 0 && pageSize > 0 ? static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(pageSize)
+                                   : 0;
 }
 
 }  // namespace meniscus

@@ -146,7 +146,7 @@ void addStructureOptions(CLI::App& app, RenderOptions& o) {
   OptionGroup group(app, "Atoms");
   group.value("--select", "CID",
               "Draw only these: /model/chain/residues/atom[element], for\n"
-              "example //A/10-20, //*/(HEM), ///CA[C] (gemmi's syntax)",
+              "example //A/10-20, '(HEM)', 'CA[C]' (gemmi's syntax)",
               [&o](auto&, auto& v) { o.structure.select = v; });
   group.value("--model", "N|all",
               "Model of the file by its number [the first]. With {model} in\n"
@@ -200,7 +200,7 @@ void requireConsistent(const CLI::App& app, RenderOptions& o) {
 std::string pictureOptionsOf(const CLI::App& app) {
   std::string text;
   for (const CLI::Option* option : app.get_options({})) {
-    if (option->count() == 0 || option->get_lnames().empty()) continue;
+    if (option->count() == 0 || option->get_lnames().empty() || option->results().back() == "false") continue;
     const std::string& name = option->get_lnames().front();
     if (std::find(kNotForThePicture.begin(), kNotForThePicture.end(), name) != kNotForThePicture.end())
       continue;

@@ -1,6 +1,7 @@
 #pragma once
 // What a run of `meniscus render` did and what it cost: for --stats and --explain.
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -32,6 +33,11 @@ struct RunReport {
   RenderStats render;
 };
 
+/// Time of drawing alone: programs are compiled on first use, while the renderer's clock for drawing runs.
+inline double drawMs(const RunReport& report) {
+  return std::max(0.0, report.render.drawMs - report.render.compileMs);
+}
+
 /// Adds the time it lives to `seconds`.
 class Timed {
  public:
@@ -48,6 +54,9 @@ class Timed {
 
 /// Fills in totalSeconds, cpuSeconds and peakMemoryBytes from the process as it is now.
 void addProcessUsage(RunReport& report);
+
+/// Main memory of this machine; 0 if it is not known.
+std::uint64_t physicalMemoryBytes();
 
 std::string statsAsJson(const RunReport& report);
 std::string explanationOf(const RunReport& report);

@@ -24,7 +24,7 @@ Json secondsOf(const RunReport& report) {
           {"context", report.contextSeconds},
           {"upload", report.render.uploadMs / 1000},
           {"compile", report.render.compileMs / 1000},
-          {"draw", report.render.drawMs / 1000},
+          {"draw", drawMs(report) / 1000},
           {"readback", report.render.readbackMs / 1000},
           {"encode", report.encodeSeconds},
           {"total", report.totalSeconds}};

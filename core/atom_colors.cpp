@@ -9,11 +9,11 @@ namespace meniscus {
 
 namespace {
 
-// Neighbours in the list differ in hue and in lightness. The first ones are neither the blue of nitrogen nor the red of
-// oxygen, so that carbons by chain stay apart from both.
-constexpr std::array<Rgb, 20> kChainColors{0x59A89C, 0xF2A541, 0xA98BC3, 0xB9C46A, 0xE7A6B8, 0x8CC5E3, 0xA3805F,
-                                           0x4C78A8, 0xD4605A, 0xE8D174, 0x6E9F46, 0xB2477F, 0x3D5A6C, 0xC7B299,
-                                           0x9ED06B, 0x8F4E8B, 0xE27D3A, 0x5E7FD6, 0x2F8F6B, 0xB0B0B0};
+// Neighbours in the list differ in hue and in lightness. The first ones are neither the blue of nitrogen nor
+// the red of oxygen, so that carbons by chain stay apart from both.
+constexpr std::array<Rgb, 20> kChainColors{
+    0x59A89C, 0xF2A541, 0xA98BC3, 0xB9C46A, 0xE7A6B8, 0x8CC5E3, 0xA3805F, 0x4C78A8, 0xD4605A, 0xE8D174,
+    0x6E9F46, 0xB2477F, 0x3D5A6C, 0xC7B299, 0x9ED06B, 0x8F4E8B, 0xE27D3A, 0x5E7FD6, 0x2F8F6B, 0xB0B0B0};
 
 constexpr Rgb kNoValue = 0xAAAAAA;
 
@@ -27,7 +27,9 @@ Rgb mix(Rgb from, Rgb to, double share) {
   return out;
 }
 
-Rgb chainColor(std::uint32_t chain) { return kChainColors[chain % kChainColors.size()]; }
+Rgb chainColor(std::uint32_t chain) {
+  return kChainColors[chain % kChainColors.size()];
+}
 
 // AlphaFold Database: confidence bands and their colours (Jumper et al. 2021; Varadi et al. 2022).
 Rgb plddtColor(float value) {
@@ -46,7 +48,11 @@ std::vector<Rgb> colorByBFactor(const Molecule& molecule) {
   const auto percentile = [&](double p) {
     return static_cast<double>(sorted[static_cast<std::size_t>(p * static_cast<double>(sorted.size() - 1))]);
   };
-  const double low = percentile(0.05), high = percentile(0.95);
+  double low = percentile(0.05), high = percentile(0.95);
+  if (!(high > low)) {
+    low = percentile(0);
+    high = percentile(1);
+  }
   for (std::size_t i = 0; i < colors.size(); ++i) {
     const double b = static_cast<double>(molecule.bFactors[i]);
     if (!std::isfinite(b)) continue;
@@ -120,10 +126,14 @@ Rgb residueColor(const Residue& residue) {
     return 0xB0B0B0;
   }
   switch (residue.kind) {
-    case ResidueKind::water: return 0xE06A6A;
-    case ResidueKind::ion: return 0x9B6BD6;
-    case ResidueKind::saccharide: return 0x69B3E7;
-    default: return 0xE07BC0;
+    case ResidueKind::water:
+      return 0xE06A6A;
+    case ResidueKind::ion:
+      return 0x9B6BD6;
+    case ResidueKind::saccharide:
+      return 0x69B3E7;
+    default:
+      return 0xE07BC0;
   }
 }
 
@@ -142,12 +152,23 @@ std::vector<Rgb> colorAtoms(const Molecule& molecule, const Coloring& coloring) 
         colors[i] = carbon ? chainColor(molecule.chainOf(i)) : elementColor(molecule.elements[i]);
         break;
       }
-      case ColorScheme::chain: colors[i] = chainColor(molecule.chainOf(i)); break;
-      case ColorScheme::residue: colors[i] = residueColor(molecule.residues[molecule.residueOf[i]]); break;
-      case ColorScheme::plddt: colors[i] = plddtColor(molecule.bFactors[i]); break;
-      case ColorScheme::rainbow: colors[i] = rainbow[molecule.residueOf[i]]; break;
-      case ColorScheme::uniform: colors[i] = coloring.uniform; break;
-      case ColorScheme::bFactor: break;  // above
+      case ColorScheme::chain:
+        colors[i] = chainColor(molecule.chainOf(i));
+        break;
+      case ColorScheme::residue:
+        colors[i] = residueColor(molecule.residues[molecule.residueOf[i]]);
+        break;
+      case ColorScheme::plddt:
+        colors[i] = plddtColor(molecule.bFactors[i]);
+        break;
+      case ColorScheme::rainbow:
+        colors[i] = rainbow[molecule.residueOf[i]];
+        break;
+      case ColorScheme::uniform:
+        colors[i] = coloring.uniform;
+        break;
+      case ColorScheme::bFactor:
+        break;  // above
     }
   }
   return colors;

@@ -73,7 +73,8 @@ glm::dquat principalAxes(std::span<const FitSphere> spheres, bool tall) {
   }
   const Eigen3 eigen = eigenDecomposition(covariance);
   std::array<int, 3> order{0, 1, 2};
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return eigen.values[a] > eigen.values[b]; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return eigen.values[a] > eigen.values[b]; });
   if (eigen.values[order[0]] <= 0) return {1, 0, 0, 0};
   const glm::dvec3 longest = withSign(eigen.vectors[order[0]], spheres, mean);
   const glm::dvec3 second = withSign(eigen.vectors[order[1]], spheres, mean);
@@ -101,7 +102,8 @@ Camera fitted(Camera camera, ImageSize size, std::span<const FitSphere> spheres,
   const bool perspective = camera.projection == Projection::perspective;
   const double tanY = std::tan(camera.fovY * 0.5) * (1 - margin);
   const double tanX = tanY * size.width / size.height;
-  // How far a sphere reaches beyond its centre against a plane of the frustum, and how much its height counts.
+  // How far a sphere reaches beyond its centre against a plane of the frustum, and how much its height
+  // counts.
   const double reachX = perspective ? std::hypot(1.0, tanX) : 1.0, leanX = perspective ? tanX : 0.0;
   const double reachY = perspective ? std::hypot(1.0, tanY) : 1.0, leanY = perspective ? tanY : 0.0;
 

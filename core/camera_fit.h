@@ -14,11 +14,13 @@ struct FitSphere {
   double radius;
 };
 
-/// Looks along the shortest principal axis, the longest being horizontal (vertical if `tall`), signs chosen by
-/// the third moments so that the result does not depend on the order of atoms. Identity for fewer than two points.
+/// Looks along the shortest principal axis, the longest being horizontal (vertical if `tall`), signs chosen
+/// by the third moments so that the result does not depend on the order of atoms. Identity for fewer than two
+/// points.
 glm::dquat principalAxes(std::span<const FitSphere> spheres, bool tall);
 
-/// Looks down the x, y or z axis (0, 1, 2) from its positive end; z: x right, y up; x: y right, z up; y: z right, x up.
+/// Looks down the x, y or z axis (0, 1, 2) from its positive end; z: x right, y up; x: y right, z up; y: z
+/// right, x up.
 glm::dquat lookDownAxis(int axis);
 
 /// Turns by degrees about the screen's x (right), y (up) and z (towards the viewer) axes, in this order.

@@ -12,9 +12,9 @@ namespace meniscus {
 /// Rows from the bottom, as pixel coordinates (core/view.h). Channels nobody asked for are empty.
 struct HitImage {
   ImageSize size;
-  std::vector<float> distance;      ///< along the unit ray from its origin [Å]; +infinity = miss
-  std::vector<glm::vec3> normal;    ///< unit, view space, towards the viewer; zero = miss
-  std::vector<std::uint32_t> id;    ///< 0 = miss
+  std::vector<float> distance;    ///< along the unit ray from its origin [Å]; +infinity = miss
+  std::vector<glm::vec3> normal;  ///< unit, view space, towards the viewer; zero = miss
+  std::vector<std::uint32_t> id;  ///< 0 = miss
 };
 
 }  // namespace meniscus

@@ -75,25 +75,25 @@ struct Assembly {
 };
 
 struct UnitCell {
-  double a = 0, b = 0, c = 0;              ///< Å
+  double a = 0, b = 0, c = 0;                ///< Å
   double alpha = 90, beta = 90, gamma = 90;  ///< degrees
 };
 
 /// One model of a structure. All per-atom arrays have atomCount() entries, except anisotropies, which is
 /// empty when the file has none. Atoms of a residue, and residues of a chain, are contiguous.
 struct Molecule {
-  std::string name;         ///< entry id or file stem
-  std::int32_t model = 1;   ///< model number in the file
-  std::vector<glm::dvec3> positions;      ///< Å
+  std::string name;                   ///< entry id or file stem
+  std::int32_t model = 1;             ///< model number in the file
+  std::vector<glm::dvec3> positions;  ///< Å
   std::vector<AtomName> names;
-  std::vector<std::uint8_t> elements;     ///< atomic number, 0 = unknown; deuterium is 1
-  std::vector<std::uint32_t> residueOf;   ///< index into residues
-  std::vector<float> bFactors;            ///< Å^2, or pLDDT in predicted models
+  std::vector<std::uint8_t> elements;    ///< atomic number, 0 = unknown; deuterium is 1
+  std::vector<std::uint32_t> residueOf;  ///< index into residues
+  std::vector<float> bFactors;           ///< Å^2, or pLDDT in predicted models
   std::vector<float> occupancies;
-  std::vector<char> altlocs;              ///< ' ' if none
+  std::vector<char> altlocs;  ///< ' ' if none
   std::vector<std::int8_t> formalCharges;
   std::vector<std::int32_t> serials;
-  std::vector<Anisotropy> anisotropies;   ///< empty, or one per atom (all zero where the file has none)
+  std::vector<Anisotropy> anisotropies;  ///< empty, or one per atom (all zero where the file has none)
   std::vector<Residue> residues;
   std::vector<Chain> chains;
   std::vector<Bond> bonds;  ///< those of the file's records after reading; all after addMissingBonds()

@@ -16,9 +16,12 @@ constexpr std::uint32_t kNotDrawn = 0;
 float drawnRadius(const SceneObject& object, std::size_t atom) {
   const float vdw = vanDerWaalsRadius(object.molecule->elements[atom], object.radii);
   switch (object.representation) {
-    case Representation::spacefill: return vdw;
-    case Representation::ballAndStick: return vdw * static_cast<float>(object.ballScale);
-    case Representation::licorice: return static_cast<float>(object.licoriceRadius);
+    case Representation::spacefill:
+      return vdw;
+    case Representation::ballAndStick:
+      return vdw * static_cast<float>(object.ballScale);
+    case Representation::licorice:
+      return static_cast<float>(object.licoriceRadius);
   }
   return vdw;
 }
@@ -71,18 +74,20 @@ void addPlacement(const SceneObject& object, const Placement& placement, const s
     }
   });
   if (!bonds) return;
-  const auto radius = static_cast<float>(object.representation == Representation::licorice ? object.licoriceRadius
-                                                                                           : object.stickRadius);
+  const auto radius = static_cast<float>(
+      object.representation == Representation::licorice ? object.licoriceRadius : object.stickRadius);
   for (const Bond& bond : molecule.bonds) {
     if (ids[bond.a] == kNotDrawn || ids[bond.b] == kNotDrawn) continue;
-    out.cylinders.push_back({centers[bond.a], radius, centers[bond.b], colors[bond.a], colors[bond.b], ids[bond.a],
-                             ids[bond.b]});
+    out.cylinders.push_back(
+        {centers[bond.a], radius, centers[bond.b], colors[bond.a], colors[bond.b], ids[bond.a], ids[bond.b]});
   }
 }
 
 }  // namespace
 
-bool needsBonds(Representation representation) { return representation != Representation::spacefill; }
+bool needsBonds(Representation representation) {
+  return representation != Representation::spacefill;
+}
 
 Primitives buildPrimitives(const Scene& scene) {
   Primitives out;
@@ -95,7 +100,8 @@ Primitives buildPrimitives(const Scene& scene) {
     }
   }
   if (ids >= std::numeric_limits<std::uint32_t>::max()) {
-    throw InputError("the scene has more than 4,294,967,294 atoms; draw a part of it (--select, fewer copies)");
+    throw InputError(
+        "the scene has more than 4,294,967,294 atoms; draw a part of it (--select, fewer copies)");
   }
   out.spheres.reserve(count);
 

@@ -36,8 +36,8 @@ struct Primitives {
   BoundingSphere bounds() const;  ///< world space
 };
 
-/// All objects of a scene. Ids number the atoms of the first placement of the first object 1, 2, ..., and go on.
-/// Throws InputError if more than 2^32 - 1 ids would be needed.
+/// All objects of a scene. Ids number the atoms of the first placement of the first object 1, 2, ..., and go
+/// on. Throws InputError if more than 2^32 - 1 ids would be needed.
 Primitives buildPrimitives(const Scene& scene);
 
 /// Whether an object's representation draws bonds; if none does, nobody needs to find them.

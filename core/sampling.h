@@ -6,8 +6,9 @@
 namespace meniscus {
 
 /// Offset from the pixel's centre [pixels], each coordinate in [-0.5, 0.5), of sample `index` of `count`: the
-/// Hammersley set (Niederreiter 1992, §3.1), centred, so that `count` rays fall on `count` different columns and rows.
-/// One sample is the centre. Multiples of 1/256: added to pixel coordinates below 65,536 they stay exact in float32.
+/// Hammersley set (Niederreiter 1992, §3.1) with ranks for ordinates, so that each of `count` columns and
+/// rows holds one. One sample is the centre. Multiples of 1/256: added to pixel coordinates below 65,536 they
+/// stay exact in float32.
 glm::vec2 sampleOffset(int index, int count);
 
 }  // namespace meniscus

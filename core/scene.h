@@ -37,8 +37,8 @@ struct SceneObject {
   Representation representation = Representation::spacefill;
   Coloring coloring;
   RadiusSet radii = RadiusSet::bondi;
-  double ballScale = 0.25;     ///< ball radius as a share of the van der Waals radius (ball and stick)
-  double stickRadius = 0.15;   ///< cylinder radius [Å], ball and stick
+  double ballScale = 0.25;       ///< ball radius as a share of the van der Waals radius (ball and stick)
+  double stickRadius = 0.15;     ///< cylinder radius [Å], ball and stick
   double licoriceRadius = 0.25;  ///< cylinder and sphere radius [Å], licorice
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-// shaders/shared/*.glsl as C++, once in float (meniscus::f32) and once in double (meniscus::f64). The dialect is
-// described in shaders/shared/README.md.
+// shaders/shared/*.glsl as C++, once in float (meniscus::f32) and once in double (meniscus::f64). The dialect
+// is described in shaders/shared/README.md.
 
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -17,16 +17,23 @@ using real = float;
 using glm::cross, glm::dot, glm::length, glm::normalize;
 using glm::vec2, glm::vec3, glm::vec4;
 using std::abs, std::sqrt;
-inline float max(float a, float b) { return a > b ? a : b; }
-inline float min(float a, float b) { return a < b ? a : b; }
-#define SPLITTER 4097        // 2^12 + 1
+inline float max(float a, float b) {
+  return a > b ? a : b;
+}
+inline float min(float a, float b) {
+  return a < b ? a : b;
+}
+#define SPLITTER 4097         // 2^12 + 1
 #define PARALLEL_LIMIT 1e-12  // below this, sin^2 and cos of unit float32 vectors are rounding
 #define LARGEST 1e30
+// Each needs those before it.
+// clang-format off
 #include "shaders/shared/double_float.glsl"
 #include "shaders/shared/view_block.glsl"
 #include "shaders/shared/projection.glsl"
 #include "shaders/shared/octahedral.glsl"
 #include "shaders/shared/quadrics.glsl"
+// clang-format on
 #undef SPLITTER
 #undef PARALLEL_LIMIT
 #undef LARGEST
@@ -39,16 +46,23 @@ using vec3 = glm::dvec3;
 using vec4 = glm::dvec4;
 using glm::cross, glm::dot, glm::length, glm::normalize;
 using std::abs, std::sqrt;
-inline double max(double a, double b) { return a > b ? a : b; }
-inline double min(double a, double b) { return a < b ? a : b; }
+inline double max(double a, double b) {
+  return a > b ? a : b;
+}
+inline double min(double a, double b) {
+  return a < b ? a : b;
+}
 #define SPLITTER 134217729  // 2^27 + 1
 #define PARALLEL_LIMIT 1e-30
 #define LARGEST 1e300
+// Each needs those before it.
+// clang-format off
 #include "shaders/shared/double_float.glsl"
 #include "shaders/shared/view_block.glsl"
 #include "shaders/shared/projection.glsl"
 #include "shaders/shared/octahedral.glsl"
 #include "shaders/shared/quadrics.glsl"
+// clang-format on
 #undef SPLITTER
 #undef PARALLEL_LIMIT
 #undef LARGEST

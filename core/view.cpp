@@ -8,8 +8,9 @@ namespace meniscus {
 
 namespace {
 
-// The nearest that the near plane comes to the eye when the eye is inside the scene, as a share of the scene's radius:
-// far below any feature; with a reversed float depth buffer a tiny near distance costs no precision.
+// The nearest that the near plane comes to the eye when the eye is inside the scene, as a share of the
+// scene's radius: far below any feature; with a reversed float depth buffer a tiny near distance costs no
+// precision.
 constexpr double kNearestPlane = 1e-6;
 
 }  // namespace

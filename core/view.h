@@ -19,14 +19,14 @@ enum class Projection : std::uint8_t { perspective, orthographic };
 
 struct View {
   Projection projection = Projection::perspective;
-  glm::dmat3 rotation{1.0};   ///< view axes from world axes: viewPoint = rotation * (world - pivot)
-  glm::dvec3 pivot{0.0};      ///< world position of the view-space origin [Å]
-  double distance = 100;      ///< eye to pivot [Å]; perspective only
-  double pixelSize = 0.001;   ///< of one pixel: at unit depth (perspective), in Å (orthographic)
+  glm::dmat3 rotation{1.0};     ///< view axes from world axes: viewPoint = rotation * (world - pivot)
+  glm::dvec3 pivot{0.0};        ///< world position of the view-space origin [Å]
+  double distance = 100;        ///< eye to pivot [Å]; perspective only
+  double pixelSize = 0.001;     ///< of one pixel: at unit depth (perspective), in Å (orthographic)
   glm::dvec2 center{512, 384};  ///< pixel coordinates of the optical axis
-  ImageSize size;             ///< of the whole picture
-  double nearZ = 1000;        ///< view-space z of the near plane [Å]: nothing above it is seen
-  double farZ = -1000;        ///< view-space z of the far plane [Å]: everything drawn lies above it
+  ImageSize size;               ///< of the whole picture
+  double nearZ = 1000;          ///< view-space z of the near plane [Å]: nothing above it is seen
+  double farZ = -1000;          ///< view-space z of the far plane [Å]: everything drawn lies above it
 };
 
 /// Ray with unit direction, in view space; t is measured from origin [Å].
@@ -46,11 +46,11 @@ struct BoundingSphere {
 /// How the user looks at the scene.
 struct Camera {
   Projection projection = Projection::perspective;
-  double fovY = 0.5235987755982988;       ///< vertical field of view [rad], of zoom 1
-  glm::dquat orientation{1, 0, 0, 0};     ///< world axes -> view axes
-  glm::dvec3 target{0.0};                 ///< world point in the middle of the picture [Å]
-  double distance = 100;                  ///< eye to target [Å] (orthographic: fixes the scale through fovY)
-  double zoom = 1;                        ///< magnifies the picture about its middle; the viewpoint stays
+  double fovY = 0.5235987755982988;    ///< vertical field of view [rad], of zoom 1
+  glm::dquat orientation{1, 0, 0, 0};  ///< world axes -> view axes
+  glm::dvec3 target{0.0};              ///< world point in the middle of the picture [Å]
+  double distance = 100;               ///< eye to target [Å] (orthographic: fixes the scale through fovY)
+  double zoom = 1;                     ///< magnifies the picture about its middle; the viewpoint stays
 };
 
 /// The view of a camera onto a scene: near and far planes are fitted to `bounds` (all that is drawn).

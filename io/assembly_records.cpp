@@ -49,6 +49,19 @@ std::optional<std::vector<glm::dmat4>> expandFactor(std::string_view list,
   }
 }
 
+/// Makes one range of those that follow each other without a gap; they are sorted and disjoint.
+void joinNeighbors(std::vector<IndexRange>& ranges) {
+  std::size_t kept = 0;
+  for (const IndexRange& range : ranges) {
+    if (kept > 0 && ranges[kept - 1].end() == range.first) {
+      ranges[kept - 1].count += range.count;
+    } else {
+      ranges[kept++] = range;
+    }
+  }
+  ranges.resize(kept);
+}
+
 }  // namespace
 
 std::optional<std::vector<glm::dmat4>> expandOperations(const std::string& expression,
@@ -104,6 +117,7 @@ void addAssemblies(Molecule& molecule, const std::vector<AssemblyRecord>& record
       }
       std::sort(generator.residues.begin(), generator.residues.end(),
                 [](const IndexRange& a, const IndexRange& b) { return a.first < b.first; });
+      joinNeighbors(generator.residues);
       if (!generator.residues.empty() && !generator.operations.empty()) {
         assembly.generators.push_back(std::move(generator));
       }

@@ -21,13 +21,14 @@ struct AssemblyRecord {
   std::vector<Generator> generators;
 };
 
-/// The operators of an mmCIF expression: "1", "P", "1,2,5", "(1-60)", "(X0)(1-60)(61-88)"; of a product the rightmost acts first.
-/// Nothing if it is malformed, names an unknown operator, or yields more than a million.
+/// The operators of an mmCIF expression: "1", "P", "1,2,5", "(1-60)", "(X0)(1-60)(61-88)"; of a product the
+/// rightmost acts first. Nothing if it is malformed, names an unknown operator, or yields more than a
+/// million.
 std::optional<std::vector<glm::dmat4>> expandOperations(const std::string& expression,
                                                         const std::map<std::string, glm::dmat4>& operators);
 
-/// Turns chain lists into ranges of residues; `chainOfResidue` holds for each residue the id that the records mean. Unknown chains
-/// become oddities; assemblies that come out empty are left out.
+/// Turns chain lists into ranges of residues; `chainOfResidue` holds for each residue the id that the records
+/// mean. Unknown chains become oddities; assemblies that come out empty are left out.
 void addAssemblies(Molecule& molecule, const std::vector<AssemblyRecord>& records,
                    const std::vector<std::string>& chainOfResidue, Oddities& oddities);
 

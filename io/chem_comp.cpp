@@ -48,15 +48,17 @@ std::vector<glm::dvec3> findPositions(Block& block, Oddities& oddities) {
 void addBonds(Block& block, Molecule& molecule) {
   std::unordered_map<std::string_view, std::uint32_t> atomOf;
   for (std::uint32_t i = 0; i < molecule.atomCount(); ++i) atomOf.emplace(molecule.names[i].view(), i);
-  for (const Table::Row row : block.find("_chem_comp_bond.", {"atom_id_1", "atom_id_2", "?value_order", "?type",
-                                                              "?pdbx_aromatic_flag", "?aromatic"})) {
+  for (const Table::Row row : block.find("_chem_comp_bond.", {"atom_id_1", "atom_id_2", "?value_order",
+                                                              "?type", "?pdbx_aromatic_flag", "?aromatic"})) {
     const auto a = atomOf.find(AtomName(cifText(row[0])).view());
     const auto b = atomOf.find(AtomName(cifText(row[1])).view());
     if (a == atomOf.end() || b == atomOf.end() || a == b) continue;
     const auto text = [&row](std::size_t i) { return row.has(i) ? cifText(row[i]) : std::string_view(); };
     const auto isYes = [](std::string_view flag) { return flag == "Y" || flag == "y"; };
-    const std::uint8_t order = isYes(text(4)) || isYes(text(5)) ? 4 : bondOrder(text(2).empty() ? text(3) : text(2));
-    molecule.bonds.push_back({std::min(a->second, b->second), std::max(a->second, b->second), order, BondOrigin::connection});
+    const std::uint8_t order =
+        isYes(text(4)) || isYes(text(5)) ? 4 : bondOrder(text(2).empty() ? text(3) : text(2));
+    molecule.bonds.push_back(
+        {std::min(a->second, b->second), std::max(a->second, b->second), order, BondOrigin::connection});
   }
 }
 

@@ -17,7 +17,8 @@ inline std::string_view cifText(const std::string& raw) {
   std::string_view text = raw;
   if (text.size() == 1 && (text[0] == '?' || text[0] == '.')) return {};
   if (text.size() >= 2 && (text[0] == '\'' || text[0] == '"')) return text.substr(1, text.size() - 2);
-  if (text.size() >= 3 && text[0] == ';' && text[text.size() - 2] == '\n') return text.substr(1, text.size() - 3);
+  if (text.size() >= 3 && text[0] == ';' && text[text.size() - 2] == '\n')
+    return text.substr(1, text.size() - 3);
   return text;
 }
 

@@ -10,7 +10,8 @@
 namespace meniscus {
 namespace {
 
-constexpr double kLongestNamed = 6.0;      // Å; beyond, the partner is a symmetry mate that the file does not hold
+constexpr double kLongestNamed =
+    6.0;  // Å; beyond, the partner is a symmetry mate that the file does not hold
 constexpr double kLongestAmbiguous = 4.0;  // Å; serial numbers that occur twice are trusted only this far
 constexpr std::size_t kMaxSameSerial = 64;
 
@@ -25,14 +26,16 @@ class AddressBook {
 
   std::vector<std::uint32_t> atomsAt(const AtomAddress& address) const {
     std::vector<std::uint32_t> atoms;
-    const auto place = places_.find({address.chain, address.residueNumber.value_or(0), address.insertionCode});
+    const auto place =
+        places_.find({address.chain, address.residueNumber.value_or(0), address.insertionCode});
     if (place == places_.end()) return atoms;
     const AtomName name(address.atom);
     for (const std::uint32_t r : place->second) {
       const Residue& residue = m_.residues[r];
       if (!address.residueName.empty() && residue.name != address.residueName) continue;
       for (std::uint32_t i = residue.atoms.first; i < residue.atoms.end(); ++i) {
-        const bool altlocFits = address.altloc == ' ' || m_.altlocs[i] == ' ' || m_.altlocs[i] == address.altloc;
+        const bool altlocFits =
+            address.altloc == ' ' || m_.altlocs[i] == ' ' || m_.altlocs[i] == address.altloc;
         if (m_.names[i] == name && altlocFits) atoms.push_back(i);
       }
     }
@@ -44,7 +47,9 @@ class AddressBook {
   std::map<std::tuple<std::string, std::int32_t, char>, std::vector<std::uint32_t>> places_;
 };
 
-bool altlocsMeet(char a, char b) { return a == b || a == ' ' || b == ' '; }
+bool altlocsMeet(char a, char b) {
+  return a == b || a == ' ' || b == ' ';
+}
 
 Bond makeBond(std::uint32_t a, std::uint32_t b, std::uint8_t order, BondOrigin origin) {
   return {std::min(a, b), std::max(a, b), order, origin};
@@ -104,8 +109,11 @@ void addSerialBonds(Molecule& molecule, const std::vector<SerialBond>& bonds, Od
     if (pair.first != pair.second) {
       molecule.bonds.push_back(makeBond(pair.first, pair.second, bond.order, BondOrigin::conect));
     } else {
-      oddities.add(ambiguous ? "a CONECT record has serial numbers that occur several times, none of them near: left out"
-                             : "a CONECT record names a serial number that is not there: left out", 0);
+      oddities.add(
+          ambiguous
+              ? "a CONECT record has serial numbers that occur several times, none of them near: left out"
+              : "a CONECT record names a serial number that is not there: left out",
+          0);
     }
   }
 }

@@ -1,5 +1,6 @@
 #pragma once
-// Bonds that a file states: by the names of their atoms (LINK, SSBOND, _struct_conn) or by serial numbers (CONECT).
+// Bonds that a file states: by the names of their atoms (LINK, SSBOND, _struct_conn) or by serial numbers
+// (CONECT).
 
 #include <cstdint>
 #include <optional>
@@ -30,8 +31,8 @@ struct SerialBond {
   std::uint8_t order = 1;
 };
 
-/// Adds bonds of origin `connection`. Addresses that name no atom, and atoms over 6 Å apart (mates in the crystal), become
-/// oddities.
+/// Adds bonds of origin `connection`. Addresses that name no atom, and atoms over 6 Å apart (mates in the
+/// crystal), become oddities.
 void addNamedBonds(Molecule& molecule, const std::vector<NamedBond>& bonds, Oddities& oddities);
 
 /// Adds bonds of origin `conect`. Where a serial number occurs several times, the closest pair is meant.

@@ -33,11 +33,8 @@ class FileStream final : public Imf::OStream {
   void write(const char bytes[], int count) override {
     file_.write({bytes, static_cast<std::size_t>(count)});
   }
-  std::uint64_t tellp() override { return static_cast<std::uint64_t>(std::ftell(file_.stream())); }
-  void seekp(std::uint64_t position) override {
-    if (std::fseek(file_.stream(), static_cast<long>(position), SEEK_SET) != 0)
-      throwWriteError(file_.path(), errno);
-  }
+  std::uint64_t tellp() override { return static_cast<std::uint64_t>(ftello(file_.stream())); }
+  void seekp(std::uint64_t position) override { file_.seek(position); }
 
  private:
   OutputFile& file_;

@@ -22,7 +22,7 @@ constexpr std::size_t kMaxBytes = std::size_t{4} << 30;
 constexpr std::size_t kChunk = std::size_t{1} << 20;
 // Structure files shrink by a factor of 3 to 15. Deflate's limit is 1032; only a bomb comes near.
 constexpr std::size_t kBombRatio = 200;
-constexpr std::size_t kBombFloor = std::size_t{256} << 20;
+constexpr std::size_t kBombFloor = std::size_t{64} << 20;
 
 [[noreturn]] void fail(const std::filesystem::path& path, std::string_view what) {
   throw InputError(fmt::format("{}: {}", path.string(), what));
@@ -32,8 +32,9 @@ class Descriptor {
  public:
   explicit Descriptor(const std::filesystem::path& path) : fd_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
     if (fd_ < 0) {
-      fail(path, errno == ENOENT ? "no such file: check the path"
-                                 : fmt::format("cannot be opened ({}): check its permissions", std::strerror(errno)));
+      fail(path, errno == ENOENT
+                     ? "no such file: check the path"
+                     : fmt::format("cannot be opened ({}): check its permissions", std::strerror(errno)));
     }
   }
   ~Descriptor() { ::close(fd_); }
@@ -52,7 +53,8 @@ std::string readBytes(const std::filesystem::path& path) {
   if (S_ISDIR(status.st_mode)) fail(path, "is a folder: name a structure file in it");
   std::string bytes;
   std::size_t size = 0;
-  bytes.resize(S_ISREG(status.st_mode) ? static_cast<std::size_t>(std::max<off_t>(status.st_size, 0)) + 1 : kChunk);
+  bytes.resize(S_ISREG(status.st_mode) ? static_cast<std::size_t>(std::max<off_t>(status.st_size, 0)) + 1
+                                       : kChunk);
   for (;;) {
     if (size == bytes.size()) bytes.resize(size * 2);
     const ssize_t got = ::read(file.get(), bytes.data() + size, bytes.size() - size);
@@ -66,7 +68,9 @@ std::string readBytes(const std::filesystem::path& path) {
   return bytes;
 }
 
-bool startsWith(std::string_view bytes, std::string_view prefix) { return bytes.substr(0, prefix.size()) == prefix; }
+bool startsWith(std::string_view bytes, std::string_view prefix) {
+  return bytes.substr(0, prefix.size()) == prefix;
+}
 
 /// Text has no NUL and hardly any other control characters.
 bool looksBinary(std::string_view bytes) {
@@ -99,8 +103,11 @@ class Inflater {
 void checkExpansion(const std::filesystem::path& path, std::size_t packed, std::size_t size) {
   if (size > kMaxBytes) fail(path, "decompresses to more than 4 GiB: split it");
   if (size > kBombFloor && size / kBombRatio > packed) {
-    fail(path, fmt::format("decompresses to more than {} times its size, as no structure does: decompress it yourself "
-                           "if it can be trusted", kBombRatio));
+    fail(path,
+         fmt::format(
+             "decompresses to more than {} times its size, as no structure does: decompress it yourself "
+             "if it can be trusted",
+             kBombRatio));
   }
 }
 
@@ -155,8 +162,11 @@ std::string readText(const std::filesystem::path& path) {
   if (bytes.empty()) fail(path, "is empty: fetch it again");
   if (startsWith(bytes, "\x1f\x8b")) bytes = inflateAll(path, bytes);
   if (bytes.empty()) fail(path, "is empty once decompressed: fetch it again");
-  if (startsWith(bytes, "BZh") || startsWith(bytes, "\xFD" "7zXZ") || startsWith(bytes, "\x28\xB5\x2F\xFD") ||
-      startsWith(bytes, "PK\x03\x04")) {
+  if (startsWith(bytes, "BZh") ||
+      startsWith(bytes,
+                 "\xFD"
+                 "7zXZ") ||
+      startsWith(bytes, "\x28\xB5\x2F\xFD") || startsWith(bytes, "PK\x03\x04")) {
     fail(path, "is compressed as bzip2, xz, zstd or zip: decompress it, or use gzip");
   }
   return bytes;

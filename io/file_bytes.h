@@ -6,8 +6,8 @@
 
 namespace meniscus {
 
-/// Reads a whole file, inflating gzip by content. Throws InputError if the file is missing, a folder, empty, unreadable,
-/// truncated or damaged gzip, compressed in another way, or larger than 4 GiB (decompressed).
+/// Reads a whole file, inflating gzip by content. Throws InputError if the file is missing, a folder, empty,
+/// unreadable, truncated or damaged gzip, compressed in another way, or larger than 4 GiB (decompressed).
 std::string readText(const std::filesystem::path& path);
 
 }  // namespace meniscus

@@ -9,7 +9,8 @@
 
 namespace meniscus {
 
-std::vector<std::size_t> chooseModels(std::vector<int>& numbers, const ModelChoice& choice, Oddities& oddities) {
+std::vector<std::size_t> chooseModels(std::vector<int>& numbers, const ModelChoice& choice,
+                                      Oddities& oddities) {
   std::vector<int> sorted = numbers;
   std::sort(sorted.begin(), sorted.end());
   if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) {
@@ -22,9 +23,10 @@ std::vector<std::size_t> chooseModels(std::vector<int>& numbers, const ModelChoi
   const auto found = std::find(numbers.begin(), numbers.end(), *choice.number);
   if (found == numbers.end()) {
     const auto [low, high] = std::minmax_element(numbers.begin(), numbers.end());
-    throw UsageError(fmt::format("no model {}: the file has {} model{}, numbered {}", *choice.number, numbers.size(),
-                                 numbers.size() == 1 ? "" : "s",
-                                 *low == *high ? fmt::format("{}", *low) : fmt::format("{} to {}", *low, *high)));
+    throw UsageError(
+        fmt::format("no model {}: the file has {} model{}, numbered {}", *choice.number, numbers.size(),
+                    numbers.size() == 1 ? "" : "s",
+                    *low == *high ? fmt::format("{}", *low) : fmt::format("{} to {}", *low, *high)));
   }
   chosen[0] = static_cast<std::size_t>(found - numbers.begin());
   return chosen;

@@ -21,11 +21,13 @@ struct ReadModels {
   int modelCount = 0;
 };
 
-/// Positions of the chosen models in a list of the numbers that a file gives them. Numbers that repeat are replaced by 1, 2, ...
-/// Throws UsageError if the chosen number does not occur.
-std::vector<std::size_t> chooseModels(std::vector<int>& numbers, const ModelChoice& choice, Oddities& oddities);
+/// Positions of the chosen models in a list of the numbers that a file gives them. Numbers that repeat are
+/// replaced by 1, 2, ... Throws UsageError if the chosen number does not occur.
+std::vector<std::size_t> chooseModels(std::vector<int>& numbers, const ModelChoice& choice,
+                                      Oddities& oddities);
 
-/// In a predicted model the B column holds pLDDT: sets Molecule::predicted if its values allow that, scaling 0..1 to 0..100.
+/// In a predicted model the B column holds pLDDT: sets Molecule::predicted if its values allow that, scaling
+/// 0..1 to 0..100.
 void markPredicted(Molecule& molecule, Oddities& oddities);
 
 // The readers throw InputError without the file's name, with the line where they know it.

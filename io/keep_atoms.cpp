@@ -21,8 +21,8 @@ void compact(std::vector<T>& values, const std::vector<std::uint8_t>& keep) {
   values.resize(kept);
 }
 
-/// New ranges over the elements that stay, given for each old index the number of those that stay before it (one entry more than
-/// elements).
+/// New ranges over the elements that stay, given for each old index the number of those that stay before it
+/// (one entry more than elements).
 IndexRange remap(const IndexRange& range, const std::vector<std::uint32_t>& before) {
   return {before[range.first], before[range.end()] - before[range.first]};
 }

@@ -22,7 +22,9 @@ std::string_view valueOf(const Table::Row& row, std::size_t column) {
   return row.has(column) ? cifText(row[column]) : std::string_view();
 }
 
-bool startsWith(std::string_view text, std::string_view prefix) { return text.substr(0, prefix.size()) == prefix; }
+bool startsWith(std::string_view text, std::string_view prefix) {
+  return text.substr(0, prefix.size()) == prefix;
+}
 
 std::vector<std::string> splitList(std::string_view list) {
   std::vector<std::string> items;
@@ -43,7 +45,8 @@ std::map<std::string, glm::dmat4> readOperators(gemmi::cif::Block& block, Odditi
   std::map<std::string, glm::dmat4> operators;
   std::vector<std::string> tags{"id"};
   for (const char* row : {"1", "2", "3"}) {
-    for (const char* column : {"1", "2", "3"}) tags.push_back(std::string("matrix[") + row + "][" + column + "]");
+    for (const char* column : {"1", "2", "3"})
+      tags.push_back(std::string("matrix[") + row + "][" + column + "]");
     tags.push_back(std::string("vector[") + row + "]");
   }
   for (const Table::Row row : block.find("_pdbx_struct_oper_list.", tags)) {
@@ -78,8 +81,8 @@ std::vector<NamedBond> readConnections(gemmi::cif::Block& block, bool labelIds) 
   enum { kType, kOrder, kSymmetry1, kSymmetry2, kFirst, kWidth = 9 };
   std::vector<std::string> tags{"conn_type_id", "?pdbx_value_order", "?ptnr1_symmetry", "?ptnr2_symmetry"};
   for (const std::string partner : {"ptnr1", "ptnr2"}) {
-    for (const char* item : {"_auth_asym_id", "_label_asym_id", "_auth_seq_id", "_label_seq_id", "_auth_comp_id",
-                             "_label_comp_id"}) {
+    for (const char* item : {"_auth_asym_id", "_label_asym_id", "_auth_seq_id", "_label_seq_id",
+                             "_auth_comp_id", "_label_comp_id"}) {
       tags.push_back("?" + partner + item);
     }
     tags.push_back(partner + "_label_atom_id");
@@ -118,12 +121,14 @@ std::vector<NamedBond> readConnections(gemmi::cif::Block& block, bool labelIds) 
 
 std::vector<AssemblyRecord> readAssemblies(gemmi::cif::Block& block, Oddities& oddities) {
   std::vector<AssemblyRecord> records;
-  Table generators = block.find("_pdbx_struct_assembly_gen.", {"assembly_id", "oper_expression", "asym_id_list"});
+  Table generators =
+      block.find("_pdbx_struct_assembly_gen.", {"assembly_id", "oper_expression", "asym_id_list"});
   if (!generators.ok()) return records;
   const std::map<std::string, glm::dmat4> operators = readOperators(block, oddities);
   for (const Table::Row row : generators) {
     const std::string id(cifText(row[0]));
-    auto record = std::find_if(records.begin(), records.end(), [&id](const AssemblyRecord& r) { return r.id == id; });
+    auto record =
+        std::find_if(records.begin(), records.end(), [&id](const AssemblyRecord& r) { return r.id == id; });
     if (record == records.end()) {
       records.push_back({id, {}});
       record = records.end() - 1;
@@ -139,12 +144,13 @@ std::vector<AssemblyRecord> readAssemblies(gemmi::cif::Block& block, Oddities& o
 }
 
 std::optional<UnitCell> readCell(gemmi::cif::Block& block) {
-  for (const Table::Row row : block.find("_cell.", {"length_a", "length_b", "length_c", "angle_alpha", "angle_beta",
-                                                    "angle_gamma"})) {
+  for (const Table::Row row : block.find(
+           "_cell.", {"length_a", "length_b", "length_c", "angle_alpha", "angle_beta", "angle_gamma"})) {
     const auto number = [&row](std::size_t i) { return cifNumber(row[i], std::nan("")); };
     const UnitCell cell{number(0), number(1), number(2), number(3), number(4), number(5)};
     const bool angles = cell.alpha > 0 && cell.beta > 0 && cell.gamma > 0;
-    if (cell.a > 1 && cell.b > 1 && cell.c > 1 && angles) return cell;  // 1 x 1 x 1 Å stands for none; so does NaN
+    if (cell.a > 1 && cell.b > 1 && cell.c > 1 && angles)
+      return cell;  // 1 x 1 x 1 Å stands for none; so does NaN
   }
   return std::nullopt;
 }

@@ -13,7 +13,8 @@
 
 namespace meniscus {
 
-/// _struct_conn without hydrogen bonds, salt bridges and bonds to symmetry mates. Addresses use label ids if `labelIds`.
+/// _struct_conn without hydrogen bonds, salt bridges and bonds to symmetry mates. Addresses use label ids if
+/// `labelIds`.
 std::vector<NamedBond> readConnections(gemmi::cif::Block& block, bool labelIds);
 
 /// _pdbx_struct_assembly_gen with its operators; chains are label_asym_ids.

@@ -1,5 +1,6 @@
-// mmCIF: the syntax is gemmi's; _atom_site is read from gemmi's table rather than through gemmi::Structure, which wants columns that
-// many programs leave out, refuses what can be mended, and looks residues up one by one (44,000 waters: seconds).
+// mmCIF: the syntax is gemmi's; _atom_site is read from gemmi's table rather than through gemmi::Structure,
+// which wants columns that many programs leave out, refuses what can be mended, and looks residues up one by
+// one (44,000 waters: seconds).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -35,24 +36,58 @@ gemmi::cif::Document parse(const std::string& text) {
   try {
     gemmi::cif::parse_input(document, input);
   } catch (const tao::pegtl::parse_error& error) {
-    std::string what = error.what();
-    if (const std::size_t end = what.rfind("): "); end != std::string::npos) what.erase(0, end + 3);
     const std::size_t line = error.positions().empty() ? 0 : error.positions().front().line;
-    throw InputError(fmt::format("line {}: no valid mmCIF here ({}): is the file truncated? Fetch it again", line, what));
+    throw InputError(fmt::format("line {}: no valid mmCIF here ({}): is the file truncated? Fetch it again",
+                                 line, error.message()));
   }
   return document;
 }
 
 enum Item : std::size_t {
-  kX, kY, kZ, kId, kGroup, kSymbol, kLabelAtom, kAuthAtom, kAltloc, kLabelComp, kAuthComp, kLabelAsym, kAuthAsym,
-  kLabelSeq, kAuthSeq, kInsertion, kOccupancy, kB, kCharge, kModel, kItemCount
+  kX,
+  kY,
+  kZ,
+  kId,
+  kGroup,
+  kSymbol,
+  kLabelAtom,
+  kAuthAtom,
+  kAltloc,
+  kLabelComp,
+  kAuthComp,
+  kLabelAsym,
+  kAuthAsym,
+  kLabelSeq,
+  kAuthSeq,
+  kInsertion,
+  kOccupancy,
+  kB,
+  kCharge,
+  kModel,
+  kItemCount
 };
 
 Table findAtomSite(Block& block) {
-  return block.find("_atom_site.", {"Cartn_x", "Cartn_y", "Cartn_z", "?id", "?group_PDB", "?type_symbol", "?label_atom_id",
-                                    "?auth_atom_id", "?label_alt_id", "?label_comp_id", "?auth_comp_id", "?label_asym_id",
-                                    "?auth_asym_id", "?label_seq_id", "?auth_seq_id", "?pdbx_PDB_ins_code", "?occupancy",
-                                    "?B_iso_or_equiv", "?pdbx_formal_charge", "?pdbx_PDB_model_num"});
+  return block.find("_atom_site.", {"Cartn_x",
+                                    "Cartn_y",
+                                    "Cartn_z",
+                                    "?id",
+                                    "?group_PDB",
+                                    "?type_symbol",
+                                    "?label_atom_id",
+                                    "?auth_atom_id",
+                                    "?label_alt_id",
+                                    "?label_comp_id",
+                                    "?auth_comp_id",
+                                    "?label_asym_id",
+                                    "?auth_asym_id",
+                                    "?label_seq_id",
+                                    "?auth_seq_id",
+                                    "?pdbx_PDB_ins_code",
+                                    "?occupancy",
+                                    "?B_iso_or_equiv",
+                                    "?pdbx_formal_charge",
+                                    "?pdbx_PDB_model_num"});
 }
 
 /// Direct access to the columns of _atom_site, in a loop or as single values.
@@ -91,7 +126,8 @@ class AtomSite {
     const std::size_t guess = static_cast<std::size_t>(std::max(loopLine_, 1)) + tags_ + 1 + row;
     std::string place = fmt::format("_atom_site row {}", row + 1);
     forEachLine(text_, 1, [&](std::string_view line, std::size_t number) {
-      if (number == guess && line.find(raw(kX, row)) != std::string_view::npos) place = fmt::format("line {}", number);
+      if (number == guess && line.find(raw(kX, row)) != std::string_view::npos)
+        place = fmt::format("line {}", number);
     });
     return place;
   }
@@ -109,7 +145,8 @@ class AtomSite {
 class AnisotropyTable {
  public:
   explicit AnisotropyTable(Block& block)
-      : table_(block.find("_atom_site_anisotrop.", {"id", "U[1][1]", "U[2][2]", "U[3][3]", "U[1][2]", "U[1][3]", "U[2][3]"})) {
+      : table_(block.find("_atom_site_anisotrop.",
+                          {"id", "U[1][1]", "U[2][2]", "U[3][3]", "U[1][2]", "U[1][3]", "U[2][3]"})) {
     if (!table_.ok()) return;
     for (std::size_t i = 0; i < table_.length(); ++i) {
       rowOf_.emplace(cifText(table_[static_cast<int>(i)][0]), static_cast<int>(i));
@@ -155,7 +192,8 @@ ModelColumn readModelColumn(const AtomSite& site) {
     }
     const auto integer = cifInteger(site.text(kModel, row));
     const int number = integer ? integer->value : 1;
-    const auto [found, isNew] = indexOf.try_emplace(number, static_cast<std::uint32_t>(column.numbers.size()));
+    const auto [found, isNew] =
+        indexOf.try_emplace(number, static_cast<std::uint32_t>(column.numbers.size()));
     if (isNew) column.numbers.push_back(number);
     column.ofRow.push_back(found->second);
   }
@@ -164,14 +202,16 @@ ModelColumn readModelColumn(const AtomSite& site) {
 
 std::uint8_t elementOf(const AtomSite& site, std::size_t row, const AtomRecord& atom, Oddities& oddities) {
   std::string_view symbol = site.text(kSymbol, row);
-  while (!symbol.empty() && !((symbol.back() | 0x20) >= 'a' && (symbol.back() | 0x20) <= 'z')) symbol.remove_suffix(1);
+  while (!symbol.empty() && !((symbol.back() | 0x20) >= 'a' && (symbol.back() | 0x20) <= 'z'))
+    symbol.remove_suffix(1);
   const std::uint8_t element = elementFromSymbol(symbol);
   if (element != 0 || symbol == "X") {
     if (element == 0) oddities.add("atom of unknown element", 0);
     return element;
   }
   oddities.add(symbol.empty() ? "no element: guessed from the atom's name"
-                              : "unknown element: guessed from the atom's name", 0);
+                              : "unknown element: guessed from the atom's name",
+               0);
   return guessElement(atom.name, atom.residueName);
 }
 
@@ -211,8 +251,8 @@ AtomRecord readRow(const AtomSite& site, std::size_t row, const Naming& naming, 
   if (altloc.size() > 1) oddities.add("alternate location of several letters: the first one is kept", 0);
   atom.position = {site.number(kX, row, NAN), site.number(kY, row, NAN), site.number(kZ, row, NAN)};
   if (std::isnan(atom.position.x + atom.position.y + atom.position.z)) {
-    throw InputError(fmt::format("{}: the coordinates {} {} {} are not numbers: correct or remove the atom", site.placeOf(row),
-                                 site.raw(kX, row), site.raw(kY, row), site.raw(kZ, row)));
+    throw InputError(fmt::format("{}: the coordinates {} {} {} are not numbers: correct or remove the atom",
+                                 site.placeOf(row), site.raw(kX, row), site.raw(kY, row), site.raw(kZ, row)));
   }
   atom.occupancy = static_cast<float>(site.number(kOccupancy, row, 1.0));
   atom.bFactor = static_cast<float>(site.number(kB, row, 0.0));
@@ -232,7 +272,8 @@ std::string entryName(Block& block) {
   return block.name == "#" ? std::string() : block.name;
 }
 
-ReadModels readAtomSite(const std::string& text, Block& block, const ModelChoice& choice, Oddities& oddities) {
+ReadModels readAtomSite(const std::string& text, Block& block, const ModelChoice& choice,
+                        Oddities& oddities) {
   Table table = findAtomSite(block);
   const AtomSite site(text, table);
   ModelColumn column = readModelColumn(site);
@@ -291,7 +332,8 @@ ReadModels readMmcif(const std::string& text, const ModelChoice& choice, Odditie
   }
   for (Block& block : document.blocks) {
     if (block.has_tag("_atom_site_fract_x")) {
-      throw InputError("holds fractional coordinates of a small-molecule crystal: convert it to PDB or mmCIF");
+      throw InputError(
+          "holds fractional coordinates of a small-molecule crystal: convert it to PDB or mmCIF");
     }
   }
   throw InputError("has no atoms (no _atom_site with Cartn_x, Cartn_y and Cartn_z): is it a structure?");

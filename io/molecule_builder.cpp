@@ -17,7 +17,7 @@ namespace meniscus {
 namespace {
 
 constexpr std::uint32_t kNone = 0xFFFFFFFFu;
-constexpr double kFarthest = 1e7;           // Å; a micrometre is 1e4 Å
+constexpr double kFarthest = 1e7;               // Å; a micrometre is 1e4 Å
 constexpr std::uint32_t kSearchedAtoms = 1000;  // a residue with more is a bag of atoms: names say nothing
 
 template <typename T>
@@ -57,8 +57,9 @@ void MoleculeBuilder::add(const AtomRecord& atom) {
   const glm::dvec3 p = atom.position;
   if (!(std::abs(p.x) <= kFarthest && std::abs(p.y) <= kFarthest && std::abs(p.z) <= kFarthest)) {
     const std::string place = atom.line ? fmt::format("line {}: ", atom.line) : "";
-    throw InputError(fmt::format("{}atom {} of {} {} has no usable position ({}, {}, {}): correct or remove it", place,
-                                 atom.name, atom.residueName, atom.residueNumber.value_or(0), p.x, p.y, p.z));
+    throw InputError(
+        fmt::format("{}atom {} of {} {} has no usable position ({}, {}, {}): correct or remove it", place,
+                    atom.name, atom.residueName, atom.residueNumber.value_or(0), p.x, p.y, p.z));
   }
   const auto index = static_cast<std::uint32_t>(positions_.size());
   if (index + 1 == kNone) throw InputError("holds more than 4,294,967,293 atoms: split it");
@@ -85,7 +86,8 @@ void MoleculeBuilder::add(const AtomRecord& atom) {
 }
 
 std::uint32_t MoleculeBuilder::chainOf(std::string_view name) {
-  const auto [found, isNew] = chainByName_.try_emplace(std::string(name), static_cast<std::uint32_t>(chains_.size()));
+  const auto [found, isNew] =
+      chainByName_.try_emplace(std::string(name), static_cast<std::uint32_t>(chains_.size()));
   if (isNew) {
     chains_.emplace_back(name);
     lastNumber_.push_back(0);
@@ -119,12 +121,14 @@ std::uint32_t MoleculeBuilder::residueOf(const AtomRecord& atom) {
   }
   const std::uint32_t chain = chainOf(atom.chain);
   const bool numberable = lastNumber_[chain] < std::numeric_limits<std::int32_t>::max();
-  const std::int32_t number = atom.residueNumber.value_or(numberable ? lastNumber_[chain] + 1 : lastNumber_[chain]);
+  const std::int32_t number =
+      atom.residueNumber.value_or(numberable ? lastNumber_[chain] + 1 : lastNumber_[chain]);
   currentIsNumbered_ = atom.residueNumber.has_value();
   if (!currentIsNumbered_) oddities_.add("no residue number: numbered on from the residue before", atom.line);
   lastNumber_[chain] = number;
   Key key{chain, number, atom.insertionCode, std::string(atom.residueName)};
-  const auto [found, isNew] = residueByKey_.try_emplace(std::move(key), static_cast<std::uint32_t>(residues_.size()));
+  const auto [found, isNew] =
+      residueByKey_.try_emplace(std::move(key), static_cast<std::uint32_t>(residues_.size()));
   if (!isNew && !holds(found->second, atom)) {
     const Residue& left = residues_[current_].residue;
     if (left.chain != chain || left.number != number) {
@@ -204,8 +208,9 @@ BuiltMolecule MoleculeBuilder::finish() {
   m.serials = std::move(serials_);
   m.anisotropies = std::move(anisotropies_);
   for (Residue& residue : m.residues) {
-    residue.kind = residueKind(residue.name, std::span(m.names).subspan(residue.atoms.first, residue.atoms.count),
-                               std::span(m.elements).subspan(residue.atoms.first, residue.atoms.count));
+    residue.kind =
+        residueKind(residue.name, std::span(m.names).subspan(residue.atoms.first, residue.atoms.count),
+                    std::span(m.elements).subspan(residue.atoms.first, residue.atoms.count));
   }
   demoteFreeMonomers(m);
   return built;

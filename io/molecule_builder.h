@@ -16,8 +16,8 @@ namespace meniscus {
 
 /// One atom as a file states it. Text is copied by MoleculeBuilder::add().
 struct AtomRecord {
-  std::string_view chain;        ///< author chain id
-  std::string_view subchain;     ///< label_asym_id; empty in PDB files
+  std::string_view chain;     ///< author chain id
+  std::string_view subchain;  ///< label_asym_id; empty in PDB files
   std::string_view residueName;
   std::optional<std::int32_t> residueNumber;  ///< nothing: the builder numbers on
   char insertionCode = ' ';

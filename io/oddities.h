@@ -27,7 +27,8 @@ class Oddities {
   void report(Logger& logger) const {
     for (const Entry& entry : entries_) {
       if (entry.line == 0) {
-        logger.note(entry.count == 1 ? std::string(entry.what) : fmt::format("{} ({} times)", entry.what, entry.count));
+        logger.note(entry.count == 1 ? std::string(entry.what)
+                                     : fmt::format("{} ({} times)", entry.what, entry.count));
       } else if (entry.count == 1) {
         logger.note(fmt::format("line {}: {}", entry.line, entry.what));
       } else {

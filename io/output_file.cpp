@@ -157,10 +157,17 @@ OutputFile::~OutputFile() {
   unlistTemporary(slot_);
 }
 
-void OutputFile::write(std::string_view bytes) {
-  if (std::fwrite(bytes.data(), 1, bytes.size(), stream_) == bytes.size()) return;
-  if (failure_ == 0) failure_ = errno;
+void OutputFile::fail(int errorNumber) {
+  if (failure_ == 0) failure_ = errorNumber;
   throwWriteError(path_, failure_);
+}
+
+void OutputFile::write(std::string_view bytes) {
+  if (std::fwrite(bytes.data(), 1, bytes.size(), stream_) != bytes.size()) fail(errno);
+}
+
+void OutputFile::seek(std::uint64_t position) {
+  if (fseeko(stream_, static_cast<off_t>(position), SEEK_SET) != 0) fail(errno);
 }
 
 void OutputFile::commit() {

@@ -1,6 +1,7 @@
 #pragma once
 // A file that appears whole or not at all.
 
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -30,12 +31,14 @@ class OutputFile {
   /// The name that is being written: the temporary one, or `path` itself where that is not a regular file.
   const std::filesystem::path& writtenPath() const { return temporary_; }
   void write(std::string_view bytes);
-  int failure() const { return failure_; }  ///< errno of the first write() that failed, 0 if none did
-  /// Throws as write() does, also if an earlier write failed and nobody noticed.
+  void seek(std::uint64_t position);        ///< from the start of the file
+  int failure() const { return failure_; }  ///< errno of the first operation that failed, 0 if none did
+  /// Throws as write() does, also if an earlier operation failed and nobody noticed.
   void commit();
 
  private:
   void openTemporary();
+  [[noreturn]] void fail(int errorNumber);
 
   std::filesystem::path path_;
   std::filesystem::path target_;  ///< path_ with symbolic links followed

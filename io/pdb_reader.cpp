@@ -37,7 +37,9 @@ std::vector<AtomPlace> inFileOrder(const gemmi::Model& model, std::size_t atomCo
   return places;
 }
 
-Anisotropy toAnisotropy(const gemmi::SMat33<float>& u) { return {u.u11, u.u22, u.u33, u.u12, u.u13, u.u23}; }
+Anisotropy toAnisotropy(const gemmi::SMat33<float>& u) {
+  return {u.u11, u.u22, u.u33, u.u12, u.u13, u.u23};
+}
 
 Molecule buildModel(const gemmi::Structure& structure, const MendedPdb& mended, Oddities& oddities) {
   MoleculeBuilder builder(oddities);
@@ -110,7 +112,8 @@ std::vector<AssemblyRecord> toAssemblies(const gemmi::Structure& structure) {
     for (const gemmi::Assembly::Gen& generator : assembly.generators) {
       AssemblyRecord::Generator to;
       to.chains = generator.chains;
-      for (const gemmi::Assembly::Operator& op : generator.operators) to.operations.push_back(toMatrix(op.transform));
+      for (const gemmi::Assembly::Operator& op : generator.operators)
+        to.operations.push_back(toMatrix(op.transform));
       record.generators.push_back(std::move(to));
     }
     records.push_back(std::move(record));
@@ -149,7 +152,8 @@ ReadModels readPdb(const std::string& text, const ModelChoice& choice, Oddities&
   for (const std::size_t i : chooseModels(numbers, choice, oddities)) {
     MendedPdb mended = mendPdbModel(text, outline.models[i], oddities);
     if (first) mended.text.insert(0, outline.header);
-    const gemmi::Structure structure = gemmi::read_pdb_from_memory(mended.text.data(), mended.text.size(), "");
+    const gemmi::Structure structure =
+        gemmi::read_pdb_from_memory(mended.text.data(), mended.text.size(), "");
     if (first) {
       named = toBonds(structure);
       assemblies = toAssemblies(structure);
@@ -164,7 +168,8 @@ ReadModels readPdb(const std::string& text, const ModelChoice& choice, Oddities&
     addSerialBonds(molecule, outline.conect, oddities);
     std::vector<std::string> chainOfResidue;
     if (!assemblies.empty()) {
-      for (const Residue& residue : molecule.residues) chainOfResidue.push_back(molecule.chains[residue.chain].name);
+      for (const Residue& residue : molecule.residues)
+        chainOfResidue.push_back(molecule.chains[residue.chain].name);
     }
     addAssemblies(molecule, assemblies, chainOfResidue, oddities);
     if (outline.saysPredicted && !outline.saysExperiment) markPredicted(molecule, oddities);

@@ -24,19 +24,28 @@ constexpr std::size_t kMaxAtoms = 43'770'016;                  // "ZZZZZ" + 1: w
 
 using Card = std::array<char, kWidth + 1>;  // a line's columns and its end
 
-char upper(char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; }
-bool isDigit(char c) { return c >= '0' && c <= '9'; }
-bool isLetter(char c) { return upper(c) >= 'A' && upper(c) <= 'Z'; }
+char upper(char c) {
+  return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+}
+bool isDigit(char c) {
+  return c >= '0' && c <= '9';
+}
+bool isLetter(char c) {
+  return upper(c) >= 'A' && upper(c) <= 'Z';
+}
 
 bool isRecord(std::string_view line, std::string_view name) {
-  if (line.size() < name.size()) return line.size() >= 3 && name[line.size()] == ' ' && isRecord(line, name.substr(0, line.size()));
+  if (line.size() < name.size())
+    return line.size() >= 3 && name[line.size()] == ' ' && isRecord(line, name.substr(0, line.size()));
   for (std::size_t i = 0; i < name.size(); ++i) {
     if (upper(line[i]) != name[i]) return false;
   }
   return true;
 }
 
-bool isAtom(std::string_view line) { return isRecord(line, "ATOM") || isRecord(line, "HETATM"); }
+bool isAtom(std::string_view line) {
+  return isRecord(line, "ATOM") || isRecord(line, "HETATM");
+}
 
 std::string_view trim(std::string_view text) {
   while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
@@ -90,7 +99,8 @@ bool isNumber(std::string_view text) {
 
 /// A residue number that gemmi reads: decimal, or hybrid-36 from "A000".
 bool isResidueNumber(std::string_view text) {
-  if (isLetter(text[0])) return std::all_of(text.begin(), text.end(), [](char c) { return isLetter(c) || isDigit(c); });
+  if (isLetter(text[0]))
+    return std::all_of(text.begin(), text.end(), [](char c) { return isLetter(c) || isDigit(c); });
   return isNumber(text) && text.find('.') == std::string_view::npos;
 }
 
@@ -125,7 +135,8 @@ void parseConect(std::string_view line, std::size_t number, PdbOutline& outline,
     if (std::find(partners.begin(), partners.begin() + i, partners[i]) != partners.begin() + i) continue;
     const auto times = std::count(partners.begin(), partners.begin() + count, partners[i]);
     if (partners[i] != *from) {
-      outline.conect.push_back({*from, partners[i], static_cast<std::uint8_t>(std::min<std::ptrdiff_t>(times, 3))});
+      outline.conect.push_back(
+          {*from, partners[i], static_cast<std::uint8_t>(std::min<std::ptrdiff_t>(times, 3))});
     }
   }
 }
@@ -161,7 +172,8 @@ void noteHeader(std::string_view line, PdbOutline& outline) {
 /// One ATOM or HETATM record on its way into columns.
 class AtomCard {
  public:
-  AtomCard(std::string_view line, std::size_t number, Oddities& oddities) : number_(number), oddities_(oddities) {
+  AtomCard(std::string_view line, std::size_t number, Oddities& oddities)
+      : number_(number), oddities_(oddities) {
     const bool hetero = upper(line[0]) == 'H';
     lowerCase_ = line[0] >= 'a';
     card_.fill(' ');
@@ -228,7 +240,8 @@ void AtomCard::readSerial(std::string_view line) {
 
 void AtomCard::mendResidue(PdbAtomLine& atom) {
   if (card_[20] != ' ') {
-    static constexpr std::array<std::string_view, 8> kKnown{"TIP3", "TIP4", "TIP5", "SPCE", "POPC", "POPE", "HEME", "DOPC"};
+    static constexpr std::array<std::string_view, 8> kKnown{"TIP3", "TIP4", "TIP5", "SPCE",
+                                                            "POPC", "POPE", "HEME", "DOPC"};
     const bool known = std::find(kKnown.begin(), kKnown.end(), columns(18, 21)) != kKnown.end();
     if (known || (card_[21] == ' ' && card_[17] != ' ')) {
       oddities_.add("residue name of four letters", number_);
@@ -245,8 +258,9 @@ void AtomCard::checkCoordinates() const {
     const std::size_t first = 31 + 8 * i;
     const std::string_view text = columns(first, first + 7);
     if (isNumber(text)) continue;
-    throw InputError(fmt::format("line {}: the {} coordinate '{}' (columns {}-{}) is not a number: correct or remove the line",
-                                 number_, kAxes[i], trim(text), first, first + 7));
+    throw InputError(fmt::format(
+        "line {}: the {} coordinate '{}' (columns {}-{}) is not a number: correct or remove the line",
+        number_, kAxes[i], trim(text), first, first + 7));
   }
 }
 
@@ -272,7 +286,9 @@ void AtomCard::mendElement() {
     } else if (trim(columns(73, 80)).empty()) {
       oddities_.add("no element in columns 77-78: guessed from the atom's name", number_);
     } else {
-      oddities_.add("columns 73-80 hold other text (entry id, line number): elements guessed from the atoms' names", number_);
+      oddities_.add(
+          "columns 73-80 hold other text (entry id, line number): elements guessed from the atoms' names",
+          number_);
     }
     element = guessElement(columns(13, 16), columns(18, 20));
     std::memset(card_.data() + 72, ' ', 8);
@@ -344,7 +360,8 @@ MendedPdb mendPdbModel(std::string_view text, const PdbModelSpan& model, Odditie
   bool mayHaveAnisou = false;
   forEachLine(body, model.firstLine, [&](std::string_view line, std::size_t number) {
     if (isAtom(line)) {
-      if (mended.atoms.size() == kMaxAtoms) throw InputError("holds more than 43,770,016 atom records: split it");
+      if (mended.atoms.size() == kMaxAtoms)
+        throw InputError("holds more than 43,770,016 atom records: split it");
       PdbAtomLine atom;
       AtomCard card(line, number, oddities);
       Card columns = card.mend(atom);
@@ -354,7 +371,8 @@ MendedPdb mendPdbModel(std::string_view text, const PdbModelSpan& model, Odditie
       mayHaveAnisou = line.size() >= 27;
       if (mayHaveAnisou) std::memcpy(lastAtom.data(), line.data() + 12, lastAtom.size());
     } else if (isRecord(line, "ANISOU")) {
-      if (!mayHaveAnisou || line.size() < 70 || std::memcmp(lastAtom.data(), line.data() + 12, lastAtom.size()) != 0) {
+      if (!mayHaveAnisou || line.size() < 70 ||
+          std::memcmp(lastAtom.data(), line.data() + 12, lastAtom.size()) != 0) {
         oddities.add("ANISOU record that does not follow its atom: left out", number);
         return;
       }

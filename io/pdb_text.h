@@ -26,8 +26,8 @@ struct PdbOutline {
   std::string header;                ///< CRYST1, REMARK 350, SSBOND and LINK, for gemmi
   std::string entryId;               ///< of HEADER; may be empty
   std::vector<SerialBond> conect;
-  bool saysPredicted = false;     ///< the title or a remark names a program that predicts structures
-  bool saysExperiment = false;    ///< EXPDTA names an experiment
+  bool saysPredicted = false;   ///< the title or a remark names a program that predicts structures
+  bool saysExperiment = false;  ///< EXPDTA names an experiment
 };
 
 PdbOutline outlinePdb(std::string_view text, Oddities& oddities);
@@ -40,12 +40,13 @@ struct PdbAtomLine {
 };
 
 struct MendedPdb {
-  std::string text;  ///< 80-column ATOM, HETATM and ANISOU records; the serial number is the index into `atoms`
+  std::string
+      text;  ///< 80-column ATOM, HETATM and ANISOU records; the serial number is the index into `atoms`
   std::vector<PdbAtomLine> atoms;
 };
 
-/// Mends the records of one model: elements are filled in, columns 67-76 emptied, lines cut or padded to 80 columns. Throws
-/// InputError (line and remedy, without the file's name) where a coordinate is not a number.
+/// Mends the records of one model: elements are filled in, columns 67-76 emptied, lines cut or padded to 80
+/// columns. Throws InputError (line and remedy, without the file's name) where a coordinate is not a number.
 MendedPdb mendPdbModel(std::string_view text, const PdbModelSpan& model, Oddities& oddities);
 
 /// Calls visit(line, number) for every line, without its end, which may be LF or CRLF.

@@ -23,13 +23,14 @@ bool isOneOf(std::string_view name, std::initializer_list<std::string_view> name
 }
 
 bool isWater(std::string_view name) {
-  return isOneOf(name, {"HOH", "DOD", "WAT", "H2O", "OH2", "SOL", "SPC", "SPCE", "TIP", "TP3", "T3P", "TIP3", "TIP4", "TIP5",
-                        "T4P", "TP4"});
+  return isOneOf(name, {"HOH", "DOD", "WAT", "H2O", "OH2", "SOL", "SPC", "SPCE", "TIP", "TP3", "T3P", "TIP3",
+                        "TIP4", "TIP5", "T4P", "TP4"});
 }
 
 bool isSaccharide(std::string_view name) {
-  return isOneOf(name, {"NAG", "NDG", "BMA", "MAN", "GAL", "GLA", "GLC", "BGC", "FUC", "FUL", "FUB", "SIA", "XYS", "XYP", "A2G",
-                        "NGA", "GCU", "BDP", "IDR", "RAM", "ARA", "AHR", "RIB", "FRU", "SUC", "TRE", "MAL", "LAT"});
+  return isOneOf(name, {"NAG", "NDG", "BMA", "MAN", "GAL", "GLA", "GLC", "BGC", "FUC", "FUL",
+                        "FUB", "SIA", "XYS", "XYP", "A2G", "NGA", "GCU", "BDP", "IDR", "RAM",
+                        "ARA", "AHR", "RIB", "FRU", "SUC", "TRE", "MAL", "LAT"});
 }
 
 std::optional<ResidueKind> kindByName(const std::string& name) {
@@ -41,13 +42,18 @@ std::optional<ResidueKind> kindByName(const std::string& name) {
     case Kind::AA:
     case Kind::AAD:
     case Kind::PAA:
-    case Kind::MAA: return ResidueKind::aminoAcid;
+    case Kind::MAA:
+      return ResidueKind::aminoAcid;
     case Kind::RNA:
-    case Kind::DNA: return ResidueKind::nucleotide;
-    case Kind::HOH: return ResidueKind::water;
+    case Kind::DNA:
+      return ResidueKind::nucleotide;
+    case Kind::HOH:
+      return ResidueKind::water;
     case Kind::PYR:
-    case Kind::KET: return ResidueKind::saccharide;
-    default: return std::nullopt;  // ligands and ions: told apart by their atoms
+    case Kind::KET:
+      return ResidueKind::saccharide;
+    default:
+      return std::nullopt;  // ligands and ions: told apart by their atoms
   }
 }
 
@@ -72,7 +78,8 @@ ResidueKind residueKind(const std::string& name, std::span<const AtomName> atoms
   if (gemmi::find_tabulated_residue(name).found()) return ResidueKind::ligand;  // ADP looks like a nucleotide
   if (has("N") && has("CA") && has("C") && has("O")) return ResidueKind::aminoAcid;
   if (!has("P")) return ResidueKind::ligand;
-  if ((has("C1'") && has("C3'") && has("O3'")) || (has("C1*") && has("C3*") && has("O3*"))) return ResidueKind::nucleotide;
+  if ((has("C1'") && has("C3'") && has("O3'")) || (has("C1*") && has("C3*") && has("O3*")))
+    return ResidueKind::nucleotide;
   return ResidueKind::ligand;
 }
 

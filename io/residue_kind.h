@@ -9,11 +9,13 @@
 
 namespace meniscus {
 
-/// By name: standard and modified amino acids and nucleotides, waters, sugars, ions; by the backbone's atom names otherwise.
+/// By name: standard and modified amino acids and nucleotides, waters, sugars, ions; by the backbone's atom
+/// names otherwise.
 ResidueKind residueKind(const std::string& name, std::span<const AtomName> atoms,
                         std::span<const std::uint8_t> elements);
 
-/// Amino acids and nucleotides written as HETATM that continue no chain (cAMP, a glycine of the buffer) become ligands.
+/// Amino acids and nucleotides written as HETATM that continue no chain (cAMP, a glycine of the buffer)
+/// become ligands.
 void demoteFreeMonomers(Molecule& molecule);
 
 }  // namespace meniscus

@@ -2,7 +2,8 @@
 #include <fmt/format.h>
 
 #include <exception>
-#define USE_STD_SNPRINTF  // select.hpp asks for stb_sprintf otherwise, which is not needed to evaluate selections
+#define USE_STD_SNPRINTF  // select.hpp asks for stb_sprintf otherwise, which is not needed to evaluate
+                          // selections
 #include <gemmi/select.hpp>
 
 #include "core/error.h"
@@ -15,17 +16,20 @@ gemmi::Selection parse(const std::string& cid) {
   try {
     return gemmi::Selection(cid);
   } catch (const std::exception&) {
-    throw UsageError(fmt::format("'{}' is no selection: write it as /model/chains/residues/atoms, for example //A/10-20/CA[C]",
-                                 cid));
+    throw UsageError(fmt::format(
+        "'{}' is no selection: write it as /model/chains/residues/atoms, for example //A/10-20/CA[C]", cid));
   }
 }
 
 gemmi::EntityType entityTypeOf(ResidueKind kind) {
   switch (kind) {
     case ResidueKind::aminoAcid:
-    case ResidueKind::nucleotide: return gemmi::EntityType::Polymer;
-    case ResidueKind::water: return gemmi::EntityType::Water;
-    default: return gemmi::EntityType::NonPolymer;
+    case ResidueKind::nucleotide:
+      return gemmi::EntityType::Polymer;
+    case ResidueKind::water:
+      return gemmi::EntityType::Water;
+    default:
+      return gemmi::EntityType::NonPolymer;
   }
 }
 

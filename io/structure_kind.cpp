@@ -14,13 +14,18 @@ namespace {
 
 constexpr std::string_view kSupported = "PDB and mmCIF are read, plain or gzipped";
 
-[[noreturn]] void refuse(std::string_view what) { throw InputError(fmt::format("{}: {}", what, kSupported)); }
+[[noreturn]] void refuse(std::string_view what) {
+  throw InputError(fmt::format("{}: {}", what, kSupported));
+}
 
-char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+char lower(char c) {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
 
 bool startsWithIgnoringCase(std::string_view text, std::string_view lowerPrefix) {
   if (text.size() < lowerPrefix.size()) return false;
-  return std::equal(lowerPrefix.begin(), lowerPrefix.end(), text.begin(), [](char a, char b) { return a == lower(b); });
+  return std::equal(lowerPrefix.begin(), lowerPrefix.end(), text.begin(),
+                    [](char a, char b) { return a == lower(b); });
 }
 
 /// Text has no NUL and hardly any other control characters.
@@ -50,9 +55,10 @@ std::string_view skipBlankAndComments(std::string_view text) {
 
 bool startsLikePdb(std::string_view line) {
   static constexpr std::array<std::string_view, 32> kRecords{
-      "atom", "hetatm", "header", "title", "remark", "cryst1", "model ", "compnd", "source", "keywds", "expdta",
-      "author", "revdat", "jrnl", "seqres", "helix", "sheet", "ssbond", "link ", "scale", "origx", "mtrix",
-      "dbref", "obslte", "caveat", "split ", "nummdl", "het ", "hetnam", "formul", "ter", "conect"};
+      "atom",   "hetatm", "header", "title",  "remark", "cryst1", "model ", "compnd",
+      "source", "keywds", "expdta", "author", "revdat", "jrnl",   "seqres", "helix",
+      "sheet",  "ssbond", "link ",  "scale",  "origx",  "mtrix",  "dbref",  "obslte",
+      "caveat", "split ", "nummdl", "het ",   "hetnam", "formul", "ter",    "conect"};
   return std::any_of(kRecords.begin(), kRecords.end(),
                      [line](std::string_view record) { return startsWithIgnoringCase(line, record); });
 }
@@ -64,12 +70,14 @@ StructureKind detectKind(std::string_view text, std::string_view extension) {
   for (const std::string_view word : {"data_", "loop_", "global_", "save_"}) {
     if (startsWithIgnoringCase(start, word)) return StructureKind::mmcif;
   }
-  if (text.substr(0, 4) == std::string_view("\0\0\x07\xCB", 4) || extension == ".xtc") refuse("is a GROMACS XTC trajectory");
+  if (text.substr(0, 4) == std::string_view("\0\0\x07\xCB", 4) || extension == ".xtc")
+    refuse("is a GROMACS XTC trajectory");
   if (text.substr(4, 4) == "CORD" || extension == ".dcd") refuse("is a DCD trajectory");
   if (isBinary(text.substr(0, 4096))) refuse("is a binary file, no structure");
   if (extension == ".gro") refuse("is a GROMACS GRO file");
   if (startsWithIgnoringCase(start, "<!doctype html") || startsWithIgnoringCase(start, "<html")) {
-    throw InputError("is a web page, not a structure: open its address in a browser and save the file itself");
+    throw InputError(
+        "is a web page, not a structure: open its address in a browser and save the file itself");
   }
   if (startsWithIgnoringCase(start, "<?xml")) refuse("is an XML file");
   if (!start.empty() && (start[0] == '{' || start[0] == '[')) refuse("is a JSON file");

@@ -8,8 +8,8 @@ namespace meniscus {
 
 enum class StructureKind : std::uint8_t { pdb, mmcif };
 
-/// Throws InputError, without the file's name, for what is neither, saying what it is if it is known. `extension` (".gro", lower
-/// case, ".gz" taken off) only helps to name it.
+/// Throws InputError, without the file's name, for what is neither, saying what it is if it is known.
+/// `extension` (".gro", lower case, ".gz" taken off) only helps to name it.
 StructureKind detectKind(std::string_view text, std::string_view extension);
 
 }  // namespace meniscus

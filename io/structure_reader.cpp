@@ -87,7 +87,8 @@ void applyOptions(Molecule& m, const StructureOptions& options) {
   std::vector<std::uint8_t> keep(m.atomCount(), 1);
   if (options.altlocs == Altlocs::first) markFirstAltlocs(m, keep);
   for (std::size_t i = 0; i < m.atomCount(); ++i) {
-    if (options.altlocs == Altlocs::named && m.altlocs[i] != ' ' && m.altlocs[i] != options.altloc) keep[i] = 0;
+    if (options.altlocs == Altlocs::named && m.altlocs[i] != ' ' && m.altlocs[i] != options.altloc)
+      keep[i] = 0;
     if (!options.hydrogens && m.elements[i] == 1) keep[i] = 0;
   }
   markWaters(m, options.waters, keep);
@@ -99,7 +100,8 @@ void applyOptions(Molecule& m, const StructureOptions& options) {
   keepAtoms(m, keep);
 }
 
-ReadModels readModels(const std::filesystem::path& path, const StructureOptions& options, Oddities& oddities) {
+ReadModels readModels(const std::filesystem::path& path, const StructureOptions& options,
+                      Oddities& oddities) {
   std::string text = readText(path);
   const ModelChoice choice{options.model, options.allModels};
   try {
@@ -115,13 +117,15 @@ ReadModels readModels(const std::filesystem::path& path, const StructureOptions&
   } catch (const std::exception& error) {
     std::string what = error.what();
     std::replace(what.begin(), what.end(), '\n', ' ');
-    throw InputError(fmt::format("{}: cannot be read ({}): correct it or fetch it again", path.string(), what));
+    throw InputError(
+        fmt::format("{}: cannot be read ({}): correct it or fetch it again", path.string(), what));
   }
 }
 
 }  // namespace
 
-StructureFile readStructure(const std::filesystem::path& path, const StructureOptions& options, Logger& logger) {
+StructureFile readStructure(const std::filesystem::path& path, const StructureOptions& options,
+                            Logger& logger) {
   Oddities oddities;
   ReadModels read = readModels(path, options, oddities);
   StructureFile file;
@@ -133,8 +137,8 @@ StructureFile readStructure(const std::filesystem::path& path, const StructureOp
   }
   oddities.report(logger);
   if (file.models.empty()) {
-    throw InputError(fmt::format("{}: no atom is left by the options: check --select, --altloc, hydrogens and waters",
-                                 path.string()));
+    throw InputError(fmt::format(
+        "{}: no atom is left by the options: check --select, --altloc, hydrogens and waters", path.string()));
   }
   return file;
 }

@@ -16,7 +16,7 @@ namespace meniscus {
 enum class Altlocs : std::uint8_t {
   first,  ///< per residue, the first location (by letter) is kept, with all blank ones
   all,
-  named   ///< blank ones and those with StructureOptions::altloc
+  named  ///< blank ones and those with StructureOptions::altloc
 };
 
 enum class Waters : std::uint8_t { on, off, automatic };  ///< automatic: off unless nothing else is there
@@ -39,7 +39,8 @@ struct StructureFile {
 /// Reads a structure. Oddities that could be mended are noted; throws InputError (file, place, remedy) if
 /// the file is missing, unreadable, truncated, no structure, or if nothing is left after the options;
 /// UsageError if the model number or the selection's syntax is not valid.
-StructureFile readStructure(const std::filesystem::path& path, const StructureOptions& options, Logger& logger);
+StructureFile readStructure(const std::filesystem::path& path, const StructureOptions& options,
+                            Logger& logger);
 
 /// Atoms of a molecule that a gemmi CID selection matches, ascending. Throws UsageError on bad syntax.
 std::vector<std::uint32_t> selectAtoms(const Molecule& molecule, const std::string& cid);

@@ -16,9 +16,10 @@ using test::ExactHit;
 
 class Quadrics : public test::GlTest {
  protected:
-  // Every pixel is right: the same thing is met, at the same distance, unless the ray grazes something or two things are
-  // met within `tolerance` [Å] of each other. Returns how many pixels show something.
-  static int expectExact(const std::shared_ptr<Primitives>& primitives, const View& view, double tolerance = 1e-4) {
+  // Every pixel is right: the same thing is met, at the same distance, unless the ray grazes something or two
+  // things are met within `tolerance` [Å] of each other. Returns how many pixels show something.
+  static int expectExact(const std::shared_ptr<Primitives>& primitives, const View& view,
+                         double tolerance = 1e-4) {
     Renderer renderer;
     renderer.setPrimitives(primitives);
     const HitImage image = renderer.renderHits(view, {.distance = true, .normal = true, .id = true});
@@ -39,9 +40,11 @@ class Quadrics : public test::GlTest {
           continue;
         }
         const double half = std::nextafter(image.distance[i], INFINITY) - image.distance[i];
-        EXPECT_NEAR(static_cast<double>(image.distance[i]), truth.distance, tolerance + half) << "pixel " << x << ", " << y;
+        EXPECT_NEAR(static_cast<double>(image.distance[i]), truth.distance, tolerance + half)
+            << "pixel " << x << ", " << y;
         const Ray ray = rayThrough(view, {x + 0.5, y + 0.5});
-        EXPECT_LE(glm::dot(glm::dvec3(image.normal[i]), ray.direction), 1e-4) << "normal away from the viewer";
+        EXPECT_LE(glm::dot(glm::dvec3(image.normal[i]), ray.direction), 1e-4)
+            << "normal away from the viewer";
         if (testing::Test::HasFailure()) return shown;
       }
     }
@@ -70,7 +73,8 @@ TEST_F(Quadrics, BallsAndSticksArePixelExact) {
 TEST_F(Quadrics, WideAndNarrowFieldsOfView) {
   const auto scene = test::randomChain(40, 4);
   for (const double degrees : {0.01, 1.0, 120.0, 170.0}) {
-    const View view = test::viewOf(*scene, {120, 90}, Projection::perspective, degrees * 0.017453292519943295);
+    const View view =
+        test::viewOf(*scene, {120, 90}, Projection::perspective, degrees * 0.017453292519943295);
     EXPECT_GT(expectExact(scene, view, degrees < 0.1 ? 1e-3 : 1e-4), 300) << degrees;
   }
 }
@@ -150,7 +154,8 @@ TEST_F(Quadrics, SingleAtomOnePixel) {
 
 TEST_F(Quadrics, EmptySceneIsAllBackground) {
   Renderer renderer;
-  const HitImage image = renderer.renderHits(makeView(Camera{}, {7, 5}, {}), {.distance = true, .normal = true, .id = true});
+  const HitImage image =
+      renderer.renderHits(makeView(Camera{}, {7, 5}, {}), {.distance = true, .normal = true, .id = true});
   ASSERT_EQ(image.id.size(), 35u);
   for (const std::uint32_t id : image.id) EXPECT_EQ(id, 0u);
   for (const float distance : image.distance) EXPECT_TRUE(std::isinf(distance));

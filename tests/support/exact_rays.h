@@ -1,6 +1,6 @@
 #pragma once
-// Rays against spheres and capped cylinders in long double, written straight from the definitions and sharing nothing
-// with shaders/shared/: the truth that quadric tests compare with.
+// Rays against spheres and capped cylinders in long double, written straight from the definitions and sharing
+// nothing with shaders/shared/: the truth that quadric tests compare with.
 
 #include <array>
 #include <cmath>
@@ -52,12 +52,14 @@ inline std::optional<ExactChord> exactSphere(const ExactRay& ray, const Vec3& ce
   return ExactChord{along - std::sqrt(square), along + std::sqrt(square)};
 }
 
-inline std::optional<ExactChord> exactCylinder(const ExactRay& ray, const Vec3& a, const Vec3& b, Real radius) {
+inline std::optional<ExactChord> exactCylinder(const ExactRay& ray, const Vec3& a, const Vec3& b,
+                                               Real radius) {
   const Vec3 axis = glm::normalize(b - a);
   const Vec3 offset = ray.origin - a;
   const Vec3 side = offset - glm::dot(offset, axis) * axis;
   const Vec3 slope = ray.direction - glm::dot(ray.direction, axis) * axis;
-  const Real q2 = glm::dot(slope, slope), q1 = glm::dot(side, slope), q0 = glm::dot(side, side) - radius * radius;
+  const Real q2 = glm::dot(slope, slope), q1 = glm::dot(side, slope),
+             q0 = glm::dot(side, side) - radius * radius;
   const Real huge = 1e30L;
   ExactChord chord{-huge, huge};
   if (q2 > 1e-30L) {
@@ -67,7 +69,8 @@ inline std::optional<ExactChord> exactCylinder(const ExactRay& ray, const Vec3& 
   } else if (q0 > 0) {
     return std::nullopt;
   }
-  const Real climb = glm::dot(ray.direction, axis), height = glm::dot(offset, axis), length = glm::length(b - a);
+  const Real climb = glm::dot(ray.direction, axis), height = glm::dot(offset, axis),
+             length = glm::length(b - a);
   if (std::abs(climb) > 1e-25L) {
     const Real t0 = -height / climb, t1 = (length - height) / climb;
     chord.in = std::max(chord.in, std::min(t0, t1));

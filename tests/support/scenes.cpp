@@ -80,7 +80,8 @@ ExactHit exactHit(const Primitives& primitives, const View& view, glm::dvec2 pix
   const ExactRay ray = exactRay(view, pixel);
   const Real start = (Real(view.nearZ) - ray.origin.z) / ray.direction.z;
   Nearest nearest(start);
-  std::vector<std::pair<Real, Real>> margins;  // how nearly something is grazed, and from which distance on it matters
+  std::vector<std::pair<Real, Real>>
+      margins;  // how nearly something is grazed, and from which distance on it matters
   for (const SpherePrimitive& s : primitives.spheres) {
     const Vec3 center = exactViewPoint(view, primitives.origin, s.center);
     nearest.add(exactSphere(ray, center, Real(s.radius)), s.id, s.id);
@@ -89,7 +90,8 @@ ExactHit exactHit(const Primitives& primitives, const View& view, glm::dvec2 pix
     margins.emplace_back(std::abs(closest - Real(s.radius)), along - Real(s.radius));
   }
   for (const CylinderPrimitive& c : primitives.cylinders) {
-    const Vec3 a = exactViewPoint(view, primitives.origin, c.a), b = exactViewPoint(view, primitives.origin, c.b);
+    const Vec3 a = exactViewPoint(view, primitives.origin, c.a),
+               b = exactViewPoint(view, primitives.origin, c.b);
     const auto chord = exactCylinder(ray, a, b, Real(c.radius));
     const Vec3 axis = glm::normalize(b - a), middle = (a + b) * Real(0.5);
     const auto half = [&](Real t) {

@@ -7,6 +7,7 @@
 
 #include "core/image.h"
 #include "core/primitives.h"
+#include "core/render_settings.h"
 #include "core/view.h"
 
 namespace meniscus::test {
@@ -21,19 +22,28 @@ std::shared_ptr<Primitives> randomChain(int count, unsigned seed);
 View viewOf(const Primitives& primitives, ImageSize size, Projection projection = Projection::perspective,
             double fovY = 0.5);
 
+/// Everything off but the number of rays per pixel.
+inline RenderSettings withSamples(int samples) {
+  RenderSettings settings;
+  settings.samples = samples;
+  return settings;
+}
+
 /// Collects a picture.
 class MemorySink : public RowSink {
  public:
-  void writeRows(std::span<const std::byte> rows) override { bytes.insert(bytes.end(), rows.begin(), rows.end()); }
+  void writeRows(std::span<const std::byte> rows) override {
+    bytes.insert(bytes.end(), rows.begin(), rows.end());
+  }
   std::vector<std::byte> bytes;
 };
 
 /// What the ray through a pixel's centre meets first, by brute force in extended precision.
 struct ExactHit {
-  std::uint32_t id = 0;     ///< 0 = background
-  double distance = 0;      ///< along the unit ray [Å]
-  double runnerUp = 0;      ///< distance of the next thing met, if another id; infinity if none
-  double clearance = 0;     ///< how far [Å] the ray is from grazing something that is not behind the hit
+  std::uint32_t id = 0;  ///< 0 = background
+  double distance = 0;   ///< along the unit ray [Å]
+  double runnerUp = 0;   ///< distance of the next thing met, if another id; infinity if none
+  double clearance = 0;  ///< how far [Å] the ray is from grazing something that is not behind the hit
 };
 /// Cylinders count as grazed where one larger or smaller by `margin` [Å] decides otherwise.
 ExactHit exactHit(const Primitives& primitives, const View& view, glm::dvec2 pixel, double margin = 1e-4);

@@ -1,0 +1,4 @@
+meniscus_test(NAME core_test LABEL unit
+  SOURCES atom_colors_test.cpp camera_fit_test.cpp primitives_test.cpp quadric_math_test.cpp sampling_test.cpp
+          view_test.cpp
+  LIBRARIES meniscus_render meniscus_core)

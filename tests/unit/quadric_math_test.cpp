@@ -1,4 +1,5 @@
-// shaders/shared/ in float32 against long double: rays against spheres and cylinders, from 1e-2 to 1e5 Å away.
+// shaders/shared/ in float32 against long double: rays against spheres and cylinders, from 1e-2 to 1e5 Å
+// away.
 
 #include <gtest/gtest.h>
 
@@ -23,7 +24,9 @@ constexpr glm::dvec3 kOrigin(12.25, -400.5, 77.0);
 class Random {
  public:
   explicit Random(unsigned seed) : engine_(seed) {}
-  double uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
+  double uniform(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(engine_);
+  }
   double logUniform(double low, double high) { return std::exp(uniform(std::log(low), std::log(high))); }
   glm::dvec3 direction() {
     std::normal_distribution<double> normal;
@@ -38,7 +41,8 @@ class Random {
   std::mt19937 engine_;
 };
 
-// A picture in which something of size `radius` at `distance` from the eye covers 1 to 300 pixels, away from its middle.
+// A picture in which something of size `radius` at `distance` from the eye covers 1 to 300 pixels, away from
+// its middle.
 struct PlacedView {
   View view;
   glm::vec3 center;  // relative to kOrigin
@@ -80,21 +84,24 @@ struct FloatHit {
 struct FloatRay {
   f32::ViewBlock block;
   f32::ProjectedCenter center;
+  f32::Split range;
   glm::vec3 direction, point;
 
   FloatRay(const View& view, glm::vec3 cHi, glm::vec3 cLo, float reach, glm::vec2 pixel) {
     block = makeViewBlock(view, kOrigin, {0, 0, 2048, 1536}, {0, 0});
     center = f32::projectCenter(block, cHi, cLo);
+    range = f32::centerRange(block, cHi, cLo);
     direction = f32::rayDirection(block, pixel);
-    point = f32::rayPoint(block, pixel, {center.pixelX.hi, center.pixelY.hi}, {center.pixelX.lo, center.pixelY.lo},
-                          center.view, center.depth, f32::nearEye(block, center.depth, reach));
+    point = f32::rayPoint(block, pixel, {center.pixelX.hi, center.pixelY.hi},
+                          {center.pixelX.lo, center.pixelY.lo}, center.view, center.depth,
+                          f32::nearEye(block, center.depth, reach));
   }
   FloatHit visible(const f32::Chord& chord) const {
     if (!chord.hit) return {};
     const bool inside = center.view.z + chord.entry.z > block.depth.z;
     const glm::vec3 p = inside ? chord.exit : chord.entry;
     if (center.view.z + p.z > block.depth.z) return {};
-    return {true, f32::rayDistance(block, center.view, center.range, p),
+    return {true, f32::rayDistance(block, center.view, range, p),
             inside ? -chord.exitNormal : chord.entryNormal, p};
   }
 };
@@ -128,8 +135,10 @@ void checkSphere(Random& random, Projection projection) {
   const Vec3 toCenter = center - exact.origin;
   const Real closest = glm::length(toCenter - glm::dot(toCenter, exact.direction) * exact.direction);
 
-  // Rounding of the ray relative to the sphere: a few units of its radius, or of the distance if the eye is as near.
-  const Real slack = Real(16 * kEpsilon) * (Real(radius) + std::min<Real>(glm::length(toCenter), 4 * Real(radius)));
+  // Rounding of the ray relative to the sphere: a few units of its radius, or of the distance if the eye is
+  // as near.
+  const Real slack =
+      Real(16 * kEpsilon) * (Real(radius) + std::min<Real>(glm::length(toCenter), 4 * Real(radius)));
   if (!hit.hit) {
     EXPECT_FALSE(chord && closest < Real(radius) - slack && chord->out > slack)
         << "false miss, radius " << radius << " distance " << distance;
@@ -173,9 +182,9 @@ void checkCylinder(Random& random, Projection projection) {
   const double length = static_cast<double>(glm::length(b - a));
   if (!(length > 0)) return;
   const double pixelSize = size / s.view.pixelSize / (projection == Projection::perspective ? distance : 1.0);
-  const glm::vec2 pixel = pixelNear(s.view, s.center,
-                                    pixelSize * glm::dvec2(random.uniform(-1, 1), random.uniform(-1, 1)) *
-                                        random.uniform(0, 1));
+  const glm::vec2 pixel =
+      pixelNear(s.view, s.center,
+                pixelSize * glm::dvec2(random.uniform(-1, 1), random.uniform(-1, 1)) * random.uniform(0, 1));
 
   // What the vertex shader does.
   const f32::Split x = f32::twoSum(a.x, b.x), y = f32::twoSum(a.y, b.y), z = f32::twoSum(a.z, b.z);
@@ -184,10 +193,9 @@ void checkCylinder(Random& random, Projection projection) {
   const FloatRay ray(s.view, 0.5f * glm::vec3(x.hi, y.hi, z.hi), 0.5f * glm::vec3(x.lo, y.lo, z.lo),
                      radius + halfLength, pixel);
   const f32::ViewBlock& view = ray.block;
-  const glm::vec3 axisView = glm::normalize(glm::vec3(glm::dot(glm::vec3(view.xRowHi), along),
-                                                      glm::dot(glm::vec3(view.yRowHi), along),
-                                                      glm::dot(glm::vec3(view.zRowHi), along)));
-  const FloatHit hit = ray.visible(f32::cylinderChord(ray.point, ray.direction, axisView, halfLength, radius));
+  const glm::vec3 axisView = glm::normalize(f32::turn(view, along));
+  const FloatHit hit =
+      ray.visible(f32::cylinderChord(ray.point, ray.direction, axisView, halfLength, radius));
 
   const ExactRay exact = test::exactRay(s.view, pixel);
   const Vec3 endA = test::exactViewPoint(s.view, kOrigin, a), endB = test::exactViewPoint(s.view, kOrigin, b);
@@ -198,7 +206,8 @@ void checkCylinder(Random& random, Projection projection) {
     // A miss is right if a slightly smaller cylinder is missed, too.
     if (Real(radius) <= slack || glm::length(endB - endA) <= 2 * slack) return;
     const auto smaller = test::exactCylinder(exact, endA + stretch, endB - stretch, Real(radius) - slack);
-    EXPECT_FALSE(smaller && smaller->out > slack) << "false miss, radius " << radius << " distance " << distance;
+    EXPECT_FALSE(smaller && smaller->out > slack)
+        << "false miss, radius " << radius << " distance " << distance;
     return;
   }
   EXPECT_TRUE(larger || test::exactCylinder(exact, endA - stretch, endB + stretch, Real(radius) + slack))
@@ -237,7 +246,8 @@ TEST(QuadricMath, NoFalseMissAndNoErrorAbove1e3AngstromAt10000Angstrom) {
     PlacedView s = placeView(random, 1.7, 10000, Projection::perspective);
     s.view.pixelSize = 1.7 / 10000 / 20;  // the atom covers 40 pixels
     const double share = std::sqrt(random.uniform(0, 1)), angle = random.uniform(0, 6.283185307179586);
-    const glm::vec2 pixel = pixelNear(s.view, s.center, 20 * share * glm::dvec2(std::cos(angle), std::sin(angle)));
+    const glm::vec2 pixel =
+        pixelNear(s.view, s.center, 20 * share * glm::dvec2(std::cos(angle), std::sin(angle)));
     const ExactRay exact = test::exactRay(s.view, pixel);
     const Vec3 center = test::exactViewPoint(s.view, kOrigin, s.center);
     const auto chord = test::exactSphere(exact, center, Real(radius));
@@ -298,7 +308,7 @@ TEST(DoubleFloat, KeepsFortyEightBits) {
     const double bound = 0x1p-44;
     EXPECT_LE(std::abs(value(f32::addSplit(sa, sb)) - (ra + rb)), bound * (std::abs(ra) + std::abs(rb)));
     EXPECT_LE(std::abs(value(f32::multiplySplit(sa, sb)) - ra * rb), bound * std::abs(ra * rb));
-    EXPECT_LE(std::abs(value(f32::divideSplit(sa, sb)) - ra / rb), bound * std::abs(ra / rb));
+    EXPECT_LE(std::abs(value(f32::quotient(sa, sb)) - ra / rb), bound * std::abs(ra / rb));
     EXPECT_LE(std::abs(value(f32::sqrtSplit(split(std::abs(a)))) - std::sqrt(value(split(std::abs(a))))),
               bound * std::sqrt(std::abs(ra)));
     EXPECT_EQ(value(f32::twoSum(sa.hi, sb.hi)), static_cast<double>(sa.hi) + static_cast<double>(sb.hi));

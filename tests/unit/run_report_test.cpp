@@ -21,7 +21,8 @@ RunReport exampleReport() {
   report.render.omissions = {{"pass cylinders", "no bonds in this scene"}};
   report.render.programs = {"sphere"};
   report.render.buffers = {{"spheres", 9156}};
-  report.render.drawMs = 250;
+  report.render.drawMs = 350;
+  report.render.compileMs = 100;  // which the clock for drawing includes
   return report;
 }
 
@@ -32,6 +33,7 @@ TEST(StatsAsJson, saysWhatWasDoneAndWhatItCost) {
   EXPECT_EQ(json["failures"].size(), 1u);
   EXPECT_EQ(json["seconds"]["parse"], 0.5);
   EXPECT_EQ(json["seconds"]["draw"], 0.25);
+  EXPECT_EQ(json["seconds"]["compile"], 0.1);
   EXPECT_EQ(json["seconds"]["total"], 2);
   EXPECT_EQ(json["passes"][0]["runs"], 4);
   EXPECT_EQ(json["omissions"][0]["reason"], "no bonds in this scene");

@@ -40,7 +40,8 @@ inline Read readData(const std::string& name, const StructureOptions& options = 
 class TemporaryFile {
  public:
   TemporaryFile(const std::string& name, std::string_view bytes)
-      : path_(std::filesystem::temp_directory_path() / ("meniscus-" + std::to_string(counter()++) + "-" + name)) {
+      : path_(std::filesystem::temp_directory_path() /
+              ("meniscus-" + std::to_string(counter()++) + "-" + name)) {
     std::ofstream(path_, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   }
   ~TemporaryFile() {
@@ -53,7 +54,8 @@ class TemporaryFile {
 
  private:
   static std::size_t& counter() {
-    static std::size_t count = static_cast<std::size_t>(std::filesystem::file_time_type::clock::now().time_since_epoch().count());
+    static std::size_t count =
+        static_cast<std::size_t>(std::filesystem::file_time_type::clock::now().time_since_epoch().count());
     return count;
   }
   std::filesystem::path path_;

@@ -2,7 +2,7 @@
 
 #include "core/error.h"
 #include "core/structure_counts.h"
-#include "structure_files.h"
+#include "tests/unit/structure_files.h"
 
 namespace meniscus {
 namespace {
@@ -82,7 +82,7 @@ TEST(Selection, keepsBondsAndAssembliesConsistent) {
   ASSERT_EQ(m.residues.size(), 1u);
   EXPECT_EQ(m.residueOf, (std::vector<std::uint32_t>{0, 0, 0, 0}));
   EXPECT_EQ(m.assemblies.at(0).generators.at(0).residues, (std::vector<IndexRange>{{0, 1}}));
-  options.select = "C2,O1";
+  options.select = "/*/*/*/C2,O1";
   const Molecule ligand = readData("conect_double.pdb", options).molecule();
   EXPECT_EQ(ligand.atomCount(), 2u);
   EXPECT_TRUE(ligand.bonds.empty());

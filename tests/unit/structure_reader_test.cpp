@@ -6,13 +6,13 @@
 #include <string>
 
 #include "core/structure_counts.h"
-#include "structure_files.h"
+#include "tests/unit/structure_files.h"
 
 namespace meniscus {
 namespace {
 
-using test::readData;
 using test::Read;
+using test::readData;
 
 /// The two glycines that most files of the folder hold.
 void expectTwoGlycines(const Read& read) {
@@ -28,12 +28,14 @@ void expectTwoGlycines(const Read& read) {
 }
 
 class TwoGlycines : public ::testing::TestWithParam<const char*> {};
-TEST_P(TwoGlycines, areRead) { expectTwoGlycines(readData(GetParam())); }
+TEST_P(TwoGlycines, areRead) {
+  expectTwoGlycines(readData(GetParam()));
+}
 INSTANTIATE_TEST_SUITE_P(Habits, TwoGlycines,
                          ::testing::Values("plain.pdb", "crlf.pdb", "cr_only.pdb", "byte_order_mark.pdb",
-                                           "no_end_no_ter.pdb", "line_numbers.pdb", "short_lines.pdb", "six_digit_serials.pdb",
-                                           "blank_residue_numbers.pdb", "lower_case.pdb", "anisou.pdb", "esmfold.pdb",
-                                           "assembly.pdb"));
+                                           "no_end_no_ter.pdb", "line_numbers.pdb", "short_lines.pdb",
+                                           "six_digit_serials.pdb", "blank_residue_numbers.pdb",
+                                           "lower_case.pdb", "anisou.pdb", "esmfold.pdb", "assembly.pdb"));
 
 TEST(PdbHabits, plainFileHasNoNotes) {
   const Read read = readData("plain.pdb");
@@ -142,7 +144,8 @@ TEST(PdbHabits, recurringChainsAndResiduesBecomeContiguous) {
   EXPECT_EQ(m.residues[0].atoms, (IndexRange{0, 4}));
   EXPECT_EQ(m.residues[2].name, "HOH");
   for (std::uint32_t r = 0; r < m.residues.size(); ++r) {
-    for (std::uint32_t i = m.residues[r].atoms.first; i < m.residues[r].atoms.end(); ++i) EXPECT_EQ(m.residueOf[i], r);
+    for (std::uint32_t i = m.residues[r].atoms.first; i < m.residues[r].atoms.end(); ++i)
+      EXPECT_EQ(m.residueOf[i], r);
   }
   EXPECT_TRUE(read.hasNote("put together"));
 }
@@ -224,9 +227,10 @@ TEST_P(GlycineAndWaters, areRead) {
   EXPECT_EQ(m.elements[4], 8);
 }
 INSTANTIATE_TEST_SUITE_P(Habits, GlycineAndWaters,
-                         ::testing::Values("plain.cif", "crlf.cif", "cr_only.cif", "label_only.cif", "auth_only.cif",
-                                           "few_columns.cif", "quoted_numbers.cif", "insertion_in_number.cif",
-                                           "long_chain_id.cif", "shifted.cif", "assembly.cif", "predicted.cif"));
+                         ::testing::Values("plain.cif", "crlf.cif", "cr_only.cif", "label_only.cif",
+                                           "auth_only.cif", "few_columns.cif", "quoted_numbers.cif",
+                                           "insertion_in_number.cif", "long_chain_id.cif", "shifted.cif",
+                                           "assembly.cif", "predicted.cif"));
 
 TEST(MmcifHabits, authorIdsNameChainsAndResidues) {
   const Read read = readData("plain.cif");
@@ -253,9 +257,13 @@ TEST(MmcifHabits, insertionCodeWithinTheNumber) {
   EXPECT_EQ(read.molecule().residues[0].insertionCode, 'A');
 }
 
-TEST(MmcifHabits, longChainIds) { EXPECT_EQ(readData("long_chain_id.cif").molecule().chains[0].name, "LongChain"); }
+TEST(MmcifHabits, longChainIds) {
+  EXPECT_EQ(readData("long_chain_id.cif").molecule().chains[0].name, "LongChain");
+}
 
-TEST(MmcifHabits, atomOutsideALoop) { EXPECT_EQ(readData("single_atom.cif").molecule().atomCount(), 1u); }
+TEST(MmcifHabits, atomOutsideALoop) {
+  EXPECT_EQ(readData("single_atom.cif").molecule().atomCount(), 1u);
+}
 
 TEST(MmcifHabits, positionsFarFromTheOriginKeepTheirDigits) {
   EXPECT_DOUBLE_EQ(readData("shifted.cif").molecule().positions[1].x, 1000001.2);

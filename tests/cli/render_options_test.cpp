@@ -1,0 +1,316 @@
+// Every option of `meniscus render` does what its help says.
+
+#include <cmath>
+
+#include "tests/cli/cli_test.h"
+
+namespace meniscus::test {
+namespace {
+
+constexpr const char* kProtein = "1ubq.pdb";
+
+class RenderOption : public CliTest {};
+
+TEST_F(RenderOption, sizeIsWidthTimesHeightOrASquare) {
+  const Picture wide = render(kProtein, {"--size", "50x31"});
+  EXPECT_EQ(wide.width, 50);
+  EXPECT_EQ(wide.height, 31);
+  const Picture square = render(kProtein, {"--size", "40"});
+  EXPECT_EQ(square.width, 40);
+  EXPECT_EQ(square.height, 40);
+  const Picture pixel = render(kProtein, {"--size", "1x1"});
+  EXPECT_EQ(pixel.width, 1);
+}
+
+TEST_F(RenderOption, backgroundIsAColorOrTransparent) {
+  const auto corner = [this](const std::vector<std::string>& more) {
+    const auto [r, g, b, a] = render(kProtein, more).at(0, 0);
+    EXPECT_EQ(a, 1);
+    return std::array{std::lround(r * 255), std::lround(g * 255), std::lround(b * 255)};
+  };
+  EXPECT_EQ(corner({}), (std::array{255L, 255L, 255L}));
+  EXPECT_EQ(corner({"--background", "white"}), (std::array{255L, 255L, 255L}));
+  EXPECT_EQ(corner({"--background", "black"}), (std::array{0L, 0L, 0L}));
+  EXPECT_EQ(corner({"--background", "#f00"}), (std::array{255L, 0L, 0L}));
+  EXPECT_EQ(corner({"--background", "#336699"}), (std::array{0x33L, 0x66L, 0x99L}));
+  const Picture transparent = render(kProtein, {"--background", "transparent"});
+  EXPECT_EQ(transparent.channels, 4);
+  EXPECT_EQ(transparent.at(0, 0)[3], 0);
+  EXPECT_EQ(transparent.at(32, 24)[3], 1);
+}
+
+TEST_F(RenderOption, samplesSmoothEdges) {
+  const auto levels = [this](const std::string& samples) {
+    const Picture picture = render("c60.pdb", {"--background", "transparent", "--samples", samples});
+    int between = 0;
+    for (int y = 0; y < picture.height; ++y)
+      for (int x = 0; x < picture.width; ++x) between += picture.at(x, y)[3] > 0 && picture.at(x, y)[3] < 1;
+    return between;
+  };
+  EXPECT_EQ(levels("1"), 0);
+  EXPECT_GT(levels("4"), 20);
+}
+
+TEST_F(RenderOption, depthIsBitsPerChannel) {
+  EXPECT_EQ(render(kProtein).bits, 8);
+  EXPECT_EQ(render(kProtein, {"--depth", "8"}).bits, 8);
+  const Picture deep = render(kProtein, {"--depth", "16"});
+  EXPECT_EQ(deep.bits, 16);
+  EXPECT_NEAR(deep.covered(), render(kProtein).covered(), 1e-9);
+}
+
+TEST_F(RenderOption, dpiIsRecorded) {
+  EXPECT_EQ(render(kProtein).text.count("XResolution"), 0u);
+  const Picture picture = render(kProtein, {"--dpi", "300"});
+  const double perUnit = std::stod(picture.text.at("XResolution"));
+  EXPECT_NEAR(picture.text.at("ResolutionUnit") == "m" ? perUnit * 0.0254 : perUnit, 300, 0.01);
+}
+
+TEST_F(RenderOption, outputMayBeExr) {
+  const Picture picture = render(kProtein, {"--background", "transparent"}, "out.exr");
+  EXPECT_EQ(picture.bits, 16);
+  EXPECT_EQ(picture.channels, 4);
+  EXPECT_EQ(picture.at(0, 0)[3], 0);
+  EXPECT_EQ(picture.at(32, 24)[3], 1);
+}
+
+TEST_F(RenderOption, representationChangesWhatIsDrawn) {
+  const nlohmann::json spacefill = stats(kProtein);
+  EXPECT_GT(spacefill["pictures"][0]["spheres"], 600);
+  EXPECT_EQ(spacefill["pictures"][0]["cylinders"], 0);
+  const double covered = readPicture(folder_ / "out.png").covered();
+  for (const char* name : {"ball_and_stick", "licorice"}) {
+    const nlohmann::json json = stats(kProtein, {"--representation", name});
+    EXPECT_EQ(json["pictures"][0]["spheres"], spacefill["pictures"][0]["spheres"]);
+    EXPECT_GT(json["pictures"][0]["cylinders"], 600);
+    EXPECT_GT(json["pictures"][0]["bonds"], 600);
+    EXPECT_LT(readPicture(folder_ / "out.png").covered(), covered);
+  }
+}
+
+TEST_F(RenderOption, colorSchemesDiffer) {
+  std::map<std::vector<float>, std::string> seen;
+  for (const char* scheme : {"element", "chain", "residue", "bfactor", "plddt", "rainbow"}) {
+    const auto [entry, added] = seen.emplace(render(kProtein, {"--color", scheme}).pixels, scheme);
+    EXPECT_TRUE(added) << scheme << " looks like " << entry->second;
+  }
+  EXPECT_EQ(render(kProtein).pixels, render(kProtein, {"--colour", "element"}).pixels);
+}
+
+TEST_F(RenderOption, colorMayBeOneForAll) {
+  const Picture picture = render(kProtein, {"--color", "#00f", "--background", "black"});
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x) {
+      const auto [r, g, b, a] = picture.at(x, y);
+      EXPECT_EQ(r, g);
+      EXPECT_GE(b, r);
+    }
+  EXPECT_GT(picture.at(32, 24)[2], 0.3);
+}
+
+TEST_F(RenderOption, carbonsMayTakeTheirChainsColor) {
+  const Picture picture = render(kProtein, {"--carbons", "chain"});
+  EXPECT_NE(picture.pixels, render(kProtein).pixels);
+  EXPECT_NE(picture.pixels, render(kProtein, {"--color", "chain"}).pixels);
+  EXPECT_EQ(render(kProtein, {"--carbons", "element"}).pixels, render(kProtein).pixels);
+}
+
+TEST_F(RenderOption, radiiAndScalesChangeSizes) {
+  EXPECT_EQ(render(kProtein, {"--radii", "bondi"}).pixels, render(kProtein).pixels);
+  EXPECT_NE(render(kProtein, {"--radii", "alvarez"}).pixels, render(kProtein).pixels);
+  const auto covered = [this](std::vector<std::string> more) {
+    more.insert(more.end(), {"--representation", "ball_and_stick", "--size", "160x120"});
+    return render("adrenaline.pdb", more).covered();
+  };
+  EXPECT_GT(covered({"--ball-scale", "0.4"}), covered({}));
+  EXPECT_GT(covered({"--stick-radius", "0.25"}), covered({}));
+}
+
+TEST_F(RenderOption, orientAndRotateTurn) {
+  const auto pixels = [this](std::vector<std::string> more) {
+    more.push_back("--orthographic");
+    return render(kProtein, more).pixels;
+  };
+  EXPECT_EQ(pixels({"--orient", "principal"}), pixels({}));
+  EXPECT_EQ(pixels({"--orient", "z"}), pixels({"--orient", "1,0,0,0"}));
+  EXPECT_EQ(pixels({"--orient", "z"}), pixels({"--orient", "-2,0,0,0"}));
+  EXPECT_NE(pixels({"--orient", "x"}), pixels({"--orient", "y"}));
+  EXPECT_NE(pixels({"--orient", "x"}), pixels({"--orient", "z"}));
+  EXPECT_NE(pixels({"--orient", "z", "--rotate", "0,0,90"}), pixels({"--orient", "z"}));
+  EXPECT_NE(pixels({"--orient", "z", "--rotate", "-30,0,0"}),
+            pixels({"--orient", "z", "--rotate", "30,0,0"}));
+}
+
+TEST_F(RenderOption, zoomAndFocusMagnify) {
+  EXPECT_GT(render(kProtein, {"--zoom", "2"}).covered(), render(kProtein).covered());
+  EXPECT_LT(render(kProtein, {"--zoom", "0.5"}).covered(), render(kProtein).covered());
+  EXPECT_GT(render(kProtein, {"--focus", "//A/20-25"}).covered(), render(kProtein).covered());
+}
+
+TEST_F(RenderOption, fovAndOrthographicChangeThePerspective) {
+  const std::vector<float> usual = render(kProtein).pixels;
+  EXPECT_EQ(render(kProtein, {"--fov", "30"}).pixels, usual);
+  EXPECT_NE(render(kProtein, {"--fov", "90"}).pixels, usual);
+  EXPECT_NE(render(kProtein, {"--orthographic"}).pixels, usual);
+}
+
+TEST_F(RenderOption, selectDrawsAPart) {
+  const nlohmann::json all = stats(kProtein), part = stats(kProtein, {"--select", "//A/1-10"}),
+                       alphas = stats(kProtein, {"--select", "//A/1-10/CA[C]"});
+  EXPECT_LT(part["pictures"][0]["atoms"], all["pictures"][0]["atoms"]);
+  EXPECT_EQ(alphas["pictures"][0]["atoms"], 10);
+}
+
+TEST_F(RenderOption, watersAreLeftOutUnlessAlone) {
+  const auto atoms = [this](std::vector<std::string> more) -> int {
+    return stats(kProtein, more)["pictures"][0]["atoms"];
+  };
+  EXPECT_EQ(atoms({"--waters", "on"}), 660);
+  EXPECT_EQ(atoms({"--waters", "off"}), 602);
+  EXPECT_EQ(atoms({"--waters", "auto"}), 602);
+  EXPECT_EQ(atoms({}), 602);
+}
+
+TEST_F(RenderOption, hydrogensMayBeLeftOut) {
+  const auto atoms = [this](std::vector<std::string> more) -> int {
+    return stats("1d3z.pdb.gz", more)["pictures"][0]["atoms"];
+  };
+  EXPECT_EQ(atoms({"--hydrogens", "on"}), atoms({}));
+  EXPECT_LT(atoms({"--hydrogens", "off"}), atoms({}) * 2 / 3);
+}
+
+TEST_F(RenderOption, altlocChoosesAlternateLocations) {
+  const std::string head = "ATOM      1  N   ALA A   1       0.000   0.000   0.000  1.00  1.00           N\n";
+  writeFile(folder_ / "alt.pdb",
+            head +
+                "ATOM      2  CA AALA A   1       1.500   0.000   0.000  0.60  1.00           C\n"
+                "ATOM      3  CA BALA A   1       1.200   0.900   0.000  0.40  1.00           C\nEND\n");
+  const auto atoms = [this](const std::vector<std::string>& more) -> int {
+    std::vector<std::string> arguments{"render", "alt.pdb", "-o",      "out.png", "-q",
+                                       "--size", "8",       "--stats", "s.json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    expectSuccess(run(arguments));
+    return nlohmann::json::parse(readFile(folder_ / "s.json"))["pictures"][0]["atoms"];
+  };
+  EXPECT_EQ(atoms({}), 2);
+  EXPECT_EQ(atoms({"--altloc", "first"}), 2);
+  EXPECT_EQ(atoms({"--altloc", "B"}), 2);
+  EXPECT_EQ(atoms({"--altloc", "all"}), 3);
+}
+
+TEST_F(RenderOption, modelChoosesAModelOrAll) {
+  const nlohmann::json first = stats("1d3z.pdb.gz");
+  const std::vector<float> firstPixels = readPicture(folder_ / "out.png").pixels;
+  EXPECT_EQ(render("1d3z.pdb.gz", {"--model", "1"}).pixels, firstPixels);
+  EXPECT_NE(render("1d3z.pdb.gz", {"--model", "2"}).pixels, firstPixels);
+  const nlohmann::json all = stats("1d3z.pdb.gz", {"--model", "all"});
+  EXPECT_EQ(all["pictures"][0]["atoms"], 10 * first["pictures"][0]["atoms"].get<int>());
+}
+
+TEST_F(RenderOption, assemblyAndReplicatePlaceCopies) {
+  const auto spheres = [this](const std::string& file, const std::vector<std::string>& more) -> int {
+    return stats(file, more)["pictures"][0]["spheres"];
+  };
+  EXPECT_EQ(spheres("c60.pdb", {"--replicate", "2x3x1"}), 360);
+  const int once = spheres("1a8o.cif.gz", {});
+  EXPECT_EQ(spheres("1a8o.cif.gz", {"--assembly", "1"}), 2 * once);
+  EXPECT_EQ(spheres("1a8o.cif.gz", {"--assembly", "1", "--replicate", "1x1x2"}), 4 * once);
+}
+
+TEST_F(RenderOption, backendChoosesTheWayToOpenGl) {
+  EXPECT_TRUE(stats(kProtein, {"--backend", "egl"})["backend"].get<std::string>().starts_with("EGL"));
+  EXPECT_EQ(stats(kProtein, {"--backend", "osmesa"})["backend"], "OSMesa");
+}
+
+TEST_F(RenderOption, shaderDirReplacesTheShaders) {
+  EXPECT_EQ(render(kProtein, {"--shader-dir", MENISCUS_SHADERS}).pixels, render(kProtein).pixels);
+}
+
+TEST_F(RenderOption, statsHoldWhatWasDoneAndTheCost) {
+  const nlohmann::json json = stats(kProtein);
+  for (const char* key :
+       {"version", "backend", "renderer", "width", "height", "samples", "pictures", "failures", "seconds",
+        "cpuSeconds", "peakMemoryBytes", "tiles", "passes", "omissions", "programs", "buffers", "textures"})
+    EXPECT_TRUE(json.contains(key)) << key;
+  EXPECT_EQ(json["width"], 64);
+  EXPECT_EQ(json["pictures"][0]["output"], "out.png");
+  EXPECT_FALSE(json["passes"].empty());
+  EXPECT_FALSE(json["omissions"].empty());
+  double sum = 0;
+  for (const char* key :
+       {"parse", "bonds", "primitives", "context", "upload", "compile", "draw", "readback", "encode"}) {
+    ASSERT_TRUE(json["seconds"].contains(key)) << key;
+    EXPECT_GE(json["seconds"][key], 0);
+    sum += json["seconds"][key].get<double>();
+  }
+  EXPECT_LE(sum, json["seconds"]["total"].get<double>());
+  EXPECT_EQ(json["seconds"]["bonds"], 0) << "bonds are not looked for where none are drawn";
+}
+
+TEST_F(RenderOption, explainSaysWhatRanAndWhatDidNot) {
+  const ProcessResult result =
+      run({"render", molecule(kProtein), "-o", "out.png", "-q", "--size", "64x48", "--explain"});
+  expectSuccess(result);
+  for (const char* part : {"602 atoms", "What ran", "What was left out", "cylinders", "Programs", "Buffers",
+                           "Textures", "encode", "total"})
+    EXPECT_NE(result.out.find(part), std::string::npos) << part << " is not in:\n" << result.out;
+}
+
+TEST_F(RenderOption, quietLeavesOutNotes) {
+  writeFile(folder_ / "odd.pdb", "HETATM    1  XX  LIG A   1       0.000   0.000   0.000\n");
+  const ProcessResult noted = run({"render", "odd.pdb", "-o", "out.png", "--size", "8"});
+  EXPECT_EQ(noted.exitCode, 0);
+  EXPECT_TRUE(noted.err.starts_with("meniscus: odd.pdb: note: ")) << noted.err;
+  expectSuccess(run({"render", "odd.pdb", "-o", "out.png", "--size", "8", "--quiet"}));
+}
+
+TEST_F(RenderOption, metadataHoldCommandAndVersion) {
+  const Picture picture = render(kProtein, {"--color", "#f00"});
+  EXPECT_EQ(picture.text.at("Software"), "Meniscus " MENISCUS_VERSION);
+  EXPECT_EQ(picture.text.at("Comment"), "meniscus render 1ubq.pdb --size 64x48 --samples 1 --color '#f00'");
+}
+
+TEST_F(RenderOption, helpShowsEveryOption) {
+  const ProcessResult result = run({"render", "--help"});
+  expectSuccess(result);
+  for (const char* option : {"--output",
+                             "--size",
+                             "--background",
+                             "--samples",
+                             "--depth",
+                             "--dpi",
+                             "--representation",
+                             "--color",
+                             "--carbons",
+                             "--radii",
+                             "10.1021/j100785a001",
+                             "10.1039/c3dt50599e",
+                             "--ball-scale",
+                             "--stick-radius",
+                             "--orient",
+                             "--rotate",
+                             "--zoom",
+                             "--focus",
+                             "--fov",
+                             "--orthographic",
+                             "--select",
+                             "--model",
+                             "--assembly",
+                             "--altloc",
+                             "--hydrogens",
+                             "--waters",
+                             "--replicate",
+                             "--backend",
+                             "--explain",
+                             "--stats",
+                             "--shader-dir",
+                             "--quiet",
+                             "{stem}",
+                             "{model}",
+                             "Examples:"})
+    EXPECT_NE(result.out.find(option), std::string::npos) << option;
+  EXPECT_EQ(run({"help", "render"}).out, result.out);
+}
+
+}  // namespace
+}  // namespace meniscus::test
