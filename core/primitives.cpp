@@ -99,7 +99,7 @@ Primitives buildPrimitives(const Scene& scene) {
       ids += object.molecule->atomCount();
     }
   }
-  if (ids >= std::numeric_limits<std::uint32_t>::max()) {
+  if (ids > std::numeric_limits<std::uint32_t>::max()) {
     throw InputError(
         "the scene has more than 4,294,967,294 atoms; draw a part of it (--select, fewer copies)");
   }

@@ -29,15 +29,14 @@ void TexturePool::release(gl::Texture* texture) {
 }
 
 unsigned TexturePool::framebuffer(const std::vector<const gl::Texture*>& colors, const gl::Texture* depth) {
-  std::vector<unsigned> key;
-  for (const gl::Texture* color : colors) key.push_back(color ? color->object.name() : 0);
-  key.push_back(depth ? depth->object.name() : 0);
-  gl::Object& object = framebuffers_[key];
-  if (object) return object.name();
+  std::vector<std::uint64_t> key;
+  for (const gl::Texture* color : colors) key.push_back(color ? color->serial : 0);
+  key.push_back(depth ? depth->serial : 0);
+  if (const auto found = framebuffers_.find(key); found != framebuffers_.end()) return found->second.name();
 
   GLuint name = 0;
   glCreateFramebuffers(1, &name);
-  object = gl::Object(gl::ObjectKind::framebuffer, name);
+  gl::Object object(gl::ObjectKind::framebuffer, name);
   std::vector<GLenum> drawBuffers;
   for (std::size_t i = 0; i < colors.size(); ++i) {
     const GLenum point = GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i);
@@ -51,6 +50,7 @@ unsigned TexturePool::framebuffer(const std::vector<const gl::Texture*>& colors,
     throw GraphicsError("the driver refuses a framebuffer (status " + std::to_string(status) +
                         "); please report it with the output of 'meniscus doctor'");
   }
+  framebuffers_.emplace(std::move(key), std::move(object));
   return name;
 }
 

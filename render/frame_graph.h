@@ -32,7 +32,7 @@ class TexturePool {
     bool used = false;
   };
   std::vector<Entry> entries_;
-  std::map<std::vector<unsigned>, gl::Object> framebuffers_;
+  std::map<std::vector<std::uint64_t>, gl::Object> framebuffers_;  // by the textures' serial numbers
 };
 
 /// Handle of a texture in one graph.

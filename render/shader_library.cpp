@@ -35,10 +35,12 @@ std::string nameFiles(const std::string& log, const std::vector<std::string>& fi
   std::istringstream lines(log);
   std::string out;
   for (std::string line; std::getline(lines, line);) {
-    std::size_t digits = 0;
+    const std::size_t start = line.starts_with("ERROR: ") ? 7 : 0;
+    std::size_t digits = start;
     while (digits < line.size() && line[digits] >= '0' && line[digits] <= '9') ++digits;
-    if (digits > 0 && digits < 4 && digits < line.size() && (line[digits] == ':' || line[digits] == '(')) {
-      const auto number = static_cast<std::size_t>(std::stoul(line.substr(0, digits)));
+    if (digits > start && digits < start + 4 && digits < line.size() &&
+        (line[digits] == ':' || line[digits] == '(')) {
+      const auto number = static_cast<std::size_t>(std::stoul(line.substr(start, digits - start)));
       if (number < files.size()) line = "shaders/" + files[number] + line.substr(digits);
     }
     if (!out.empty()) out += "; ";

@@ -26,9 +26,9 @@ void describeCurrent(BackendReport& report) {
   report.glVersion = text(GL_VERSION);
   report.glslVersion = text(GL_SHADING_LANGUAGE_VERSION);
   const auto limit = [&](const char* name, GLenum what) {
-    GLint64 value = 0;
-    glGetInteger64v(what, &value);
-    report.limits.emplace_back(name, value);
+    GLint64 values[2] = {0, 0};  // GL_MAX_VIEWPORT_DIMS are two
+    glGetInteger64v(what, values);
+    report.limits.emplace_back(name, values[0]);
   };
   limit("TEXTURE_SIZE", GL_MAX_TEXTURE_SIZE);
   limit("VIEWPORT_DIMS", GL_MAX_VIEWPORT_DIMS);

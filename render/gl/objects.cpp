@@ -3,6 +3,7 @@
 #include <glad/gl.h>
 
 #include <algorithm>
+#include <atomic>
 
 #include "core/error.h"
 
@@ -99,7 +100,8 @@ int bytesPerTexel(TextureFormat format) {
 Texture Texture::make(const TextureDesc& desc) {
   GLuint name = 0;
   glCreateTextures(GL_TEXTURE_2D, 1, &name);
-  Texture texture{Object(ObjectKind::texture, name), desc};
+  static std::atomic<std::uint64_t> made{0};
+  Texture texture{Object(ObjectKind::texture, name), desc, ++made};
   glTextureStorage2D(name, 1, infoOf(desc.format).internal, desc.width, desc.height);
   // Integer and depth textures are incomplete with linear filters on some drivers; nothing here filters.
   glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_NEAREST);

@@ -59,6 +59,7 @@ struct TextureDesc {
 struct Texture {
   Object object;
   TextureDesc desc;
+  std::uint64_t serial = 0;  ///< never used twice in a process, unlike GL names
 
   static Texture make(const TextureDesc& desc);
   std::uint64_t bytes() const;

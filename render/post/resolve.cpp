@@ -10,7 +10,7 @@ namespace {
 
 // Layout of ResolveUniforms in shaders/post/resolve.frag.
 struct ResolveBlock {
-  glm::vec4 share, backdrop;
+  glm::vec4 count, backdrop;
 };
 
 }  // namespace
@@ -18,7 +18,7 @@ struct ResolveBlock {
 void addResolve(FrameGraph& graph, const ResolveSettings& settings, ShaderLibrary& shaders, TextureRef sum,
                 TextureRef target) {
   graph.addPass("resolve", {sum}, {{target, 0}}, [settings, &shaders, sum](const PassContext& context) {
-    const ResolveBlock block{{1.0f / static_cast<float>(settings.samples), 0, 0, 0}, settings.backdrop};
+    const ResolveBlock block{{static_cast<float>(settings.samples), 0, 0, 0}, settings.backdrop};
     const gl::Buffer uniforms = gl::Buffer::fromData(&block, sizeof(block));
     glBindTextureUnit(0, context.texture(sum).object.name());
     glBindBufferBase(GL_UNIFORM_BUFFER, 1, uniforms.object.name());

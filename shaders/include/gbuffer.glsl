@@ -19,7 +19,7 @@ layout(location = 3) out float oDistance;
 // depth: depthValue() of the point; normal: unit, view space, towards the viewer; color: 0xRRGGBB sRGB; id:
 // not 0; distance: along the unit ray [Å].
 void writeSurface(float depth, vec3 normal, uint color, uint id, float distance) {
-  gl_FragDepth = depth;
+  gl_FragDepth = min(depth, gl_FragCoord.z);  // the promise holds in spite of rounding
 #ifdef ALBEDO
   oAlbedo = vec4(uvec3(color >> 16, color >> 8, color) & 255u, 255u) / 255.0;
 #endif

@@ -12,8 +12,9 @@ vec2 cornerOf(int vertex) {
 
 // Pixel coordinates in the target of a point `offset` pixels from the projected centre.
 vec2 targetPixel(ProjectedCenter center, vec2 offset) {
-  return vec2((center.pixelX.hi - uView.tile.x) + (center.pixelX.lo + offset.x),
-              (center.pixelY.hi - uView.tile.y) + (center.pixelY.lo + offset.y));
+  precise float x = (center.pixelX.hi - uView.tile.x) + (center.pixelX.lo + offset.x);
+  precise float y = (center.pixelY.hi - uView.tile.y) + (center.pixelY.lo + offset.y);
+  return vec2(x, y);
 }
 
 // frontZ: view-space z of the nearest point of the quadric. Rounding must neither clip the quad at the near

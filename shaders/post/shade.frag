@@ -30,13 +30,13 @@ void main() {
   if (albedo.a > 0.5) {
     vec3 normal = decodeNormal(texelFetch(tNormal, at, 0).xy);
     vec3 toEye = -rayDirection(uView, gl_FragCoord.xy + uView.tile.xy);
-    vec3 halfway = normalize(uKey.xyz + toEye);
+    vec3 halfway = normalize(uKey.xyz + toEye + vec3(0.0, 0.0, 1e-6));  // never zero
     float key = max(dot(normal, uKey.xyz), 0.0) * uKey.w;
 #ifdef SHADOW
     key *= texelFetch(tVisibility, at, 0).r;
 #endif
     float fill = max(dot(normal, uFill.xyz), 0.0) * uFill.w;
-    float highlight = key > 0.0 ? uAmbient.y * pow(max(dot(normal, halfway), 0.0), uAmbient.z) : 0.0;
+    float highlight = key > 0.0 ? uAmbient.y * pow(max(dot(normal, halfway), 1e-6), uAmbient.z) : 0.0;
     highlight *= uKey.w * min(key / (0.1 * uKey.w), 1.0);  // fades out with the light it mirrors
     light = vec4(linearFromSrgb(albedo.rgb) * (key + fill + uAmbient.x) + highlight, 1.0);
   }

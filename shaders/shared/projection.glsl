@@ -77,8 +77,10 @@ FN ProjectedCenter projectCenter(ViewBlock view, vec3 cHi, vec3 cLo) {
   }
   c.pixelX = twoSum(p.x.hi, view.center.x);
   c.pixelY = twoSum(p.y.hi, view.center.y);
-  c.pixelX.lo = c.pixelX.lo + (p.x.lo + view.center.z);
-  c.pixelY.lo = c.pixelY.lo + (p.y.lo + view.center.w);
+  PRECISE real restX = c.pixelX.lo + (p.x.lo + view.center.z);
+  PRECISE real restY = c.pixelY.lo + (p.y.lo + view.center.w);
+  c.pixelX.lo = restX;
+  c.pixelY.lo = restY;
   return c;
 }
 
@@ -125,8 +127,9 @@ FN vec3 rayPoint(ViewBlock view, vec2 pixel, vec2 pixelHi, vec2 pixelLo, vec3 ce
                  bool fromEye) {
   if (fromEye) return vec3(-centerView.x, -centerView.y, view.depth.x - centerView.z);
   real perPixel = depth * view.scale.x;
-  return vec3(perPixel * ((pixel.x - pixelHi.x) - pixelLo.x), perPixel * ((pixel.y - pixelHi.y) - pixelLo.y),
-              real(0));
+  PRECISE real x = (pixel.x - pixelHi.x) - pixelLo.x;
+  PRECISE real y = (pixel.y - pixelHi.y) - pixelLo.y;
+  return vec3(perPixel * x, perPixel * y, real(0));
 }
 
 // Value for a reversed-z depth buffer of a point at view-space z: 1 on the near plane, 0 on the far plane.
@@ -149,11 +152,14 @@ FN vec3 viewPoint(ViewBlock view, vec2 pixel, real value) {
 
 // Distance along the unit ray from its origin to a point `hit` relative to the centre, rounded once.
 FN real rayDistance(ViewBlock view, vec3 centerView, Split range, vec3 hit) {
-  if (!isPerspective(view)) return range.hi + (range.lo - hit.z);
+  PRECISE real below = range.hi + (range.lo - hit.z);
+  if (!isPerspective(view)) return below;
   vec3 fromEye = vec3(centerView.x, centerView.y, centerView.z - view.depth.x);
   real squares = real(2) * dot(fromEye, hit) + dot(hit, hit);  // |fromEye + hit|^2 - |fromEye|^2
   real total = length(fromEye + hit) + range.hi;
-  return range.hi + (range.lo + (total > real(0) ? squares / total : real(0)));
+  real further = total > real(0) ? squares / total : real(0);
+  PRECISE real distance = range.hi + (range.lo + further);
+  return distance;
 }
 
 // Bounds of a projected disc or sphere along screen direction (cosA, sinA), relative to its projected centre,

@@ -25,8 +25,8 @@ FN Chord missedChord() {
 
 // point: of the ray, relative to the sphere's centre; direction: unit. Tangent rays hit.
 FN Chord sphereChord(vec3 point, vec3 direction, real radius) {
-  vec3 nearest = point - dot(point, direction) * direction;
-  nearest = nearest - dot(nearest, direction) * direction;  // once more: point may be many radii away
+  PRECISE vec3 nearly = point - dot(point, direction) * direction;
+  PRECISE vec3 nearest = nearly - dot(nearly, direction) * direction;  // once more: point may be many radii away
   real discriminant = radius * radius - dot(nearest, nearest);
   if (!(discriminant >= real(0))) return missedChord();
   vec3 halfChord = sqrt(discriminant) * direction;
@@ -60,18 +60,19 @@ FN Chord cylinderChord(vec3 point, vec3 direction, vec3 axis, real halfLength, r
     sideIn = middle - halfWidth;
     sideOut = middle + halfWidth;
   } else {
-    if (dot(aside, aside) > radius * radius) return missedChord();
+    if (!(dot(aside, aside) <= radius * radius)) return missedChord();
     sideIn = real(-LARGEST);
     sideOut = real(LARGEST);
   }
 
+  if (!(halfLength >= real(0))) return missedChord();
   real capIn = real(-LARGEST);
   real capOut = real(LARGEST);
   if (abs(along) > real(PARALLEL_LIMIT)) {
     real sign_ = along > real(0) ? real(1) : real(-1);
     capIn = (-height - sign_ * halfLength) / along;
     capOut = (-height + sign_ * halfLength) / along;
-  } else if (abs(height) > halfLength) {
+  } else if (!(abs(height) <= halfLength)) {
     return missedChord();
   }
 

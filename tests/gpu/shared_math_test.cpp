@@ -33,11 +33,12 @@ float number(Random& random, std::size_t i, std::size_t which) {
 }
 
 void append(Inputs& out, glm::vec3 v) {
-  out.insert(out.end(), {v.x, v.y, v.z});
+  for (int k = 0; k < 3; ++k) out.push_back(v[k]);
 }
 void appendSplit(Inputs& out, double x) {
   const auto hi = static_cast<float>(x);
-  out.insert(out.end(), {hi, static_cast<float>(x - static_cast<double>(hi))});
+  out.push_back(hi);
+  out.push_back(static_cast<float>(x - static_cast<double>(hi)));
 }
 
 // A split number whose lo is random, not the remainder of an edge.

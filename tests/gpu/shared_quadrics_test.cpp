@@ -18,7 +18,7 @@ namespace {
 using namespace test;
 
 void append(Inputs& out, glm::vec3 v) {
-  out.insert(out.end(), {v.x, v.y, v.z});
+  for (int k = 0; k < 3; ++k) out.push_back(v[k]);
 }
 
 class SharedQuadrics : public test::GlTest {};
