@@ -26,7 +26,8 @@ FN Chord missedChord() {
 // point: of the ray, relative to the sphere's centre; direction: unit. Tangent rays hit.
 FN Chord sphereChord(vec3 point, vec3 direction, real radius) {
   PRECISE vec3 nearly = point - dot(point, direction) * direction;
-  PRECISE vec3 nearest = nearly - dot(nearly, direction) * direction;  // once more: point may be many radii away
+  PRECISE vec3 nearest =
+      nearly - dot(nearly, direction) * direction;  // once more: point may be many radii away
   real discriminant = radius * radius - dot(nearest, nearest);
   if (!(discriminant >= real(0))) return missedChord();
   vec3 halfChord = sqrt(discriminant) * direction;
