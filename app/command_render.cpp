@@ -18,6 +18,7 @@
 #include "app/run_report.h"
 #include "core/bonds.h"
 #include "core/camera_fit.h"
+#include "core/displacement.h"
 #include "core/error.h"
 #include "core/primitives.h"
 #include "io/image_writer.h"
@@ -61,7 +62,8 @@ class RenderRun {
   SceneObject objectFor(std::shared_ptr<const Molecule> molecule) const;
   Camera cameraFor(const std::string& file, const std::vector<SceneObject>& objects) const;
   void drawPicture(const std::string& file, const std::string& output, Scene scene);
-  ImageFileOptions imageOptionsFor(const std::string& file, const std::string& output) const;
+  ImageFileOptions imageOptionsFor(const std::string& file, const std::string& output,
+                                   const Scene& scene) const;
   Renderer& renderer();
   void finishReport();
 
@@ -155,6 +157,7 @@ Molecules RenderRun::readMolecules(const std::string& file) {
       const Timed timed(report_.bondsSeconds);
       addMissingBonds(molecule, logger);
     }
+    if (options_.representation == Representation::ellipsoids) noteOddDisplacements(molecule, logger);
     molecules.push_back(std::make_shared<const Molecule>(std::move(molecule)));
   }
   showNotes(file, logger);
@@ -201,6 +204,8 @@ SceneObject RenderRun::objectFor(std::shared_ptr<const Molecule> molecule) const
   object.ballScale = options_.ballScale.value_or(object.ballScale);
   object.stickRadius = options_.stickRadius.value_or(object.stickRadius);
   object.licoriceRadius = options_.stickRadius.value_or(object.licoriceRadius);
+  object.ellipsoidStickRadius = options_.stickRadius.value_or(object.ellipsoidStickRadius);
+  object.probability = options_.probability;
   return object;
 }
 
@@ -250,25 +255,38 @@ void RenderRun::drawPicture(const std::string& file, const std::string& output, 
     picture.atoms += object.molecule->atomCount();
     picture.bonds += object.molecule->bonds.size();
   }
-  const ImageFileOptions imageOptions = imageOptionsFor(file, output);
+  const ImageFileOptions imageOptions = imageOptionsFor(file, output, scene);
   const std::unique_ptr<ImageFile> image = ImageFile::create(output, imageOptions);
   std::shared_ptr<const Primitives> primitives;
   {
     const Timed timed(report_.primitivesSeconds);
-    primitives = std::make_shared<const Primitives>(buildPrimitives(scene));
+    primitives = std::make_shared<const Primitives>(buildPrimitives(scene, options_.lines.groups));
     scene.objects.clear();
   }
   picture.spheres = primitives->spheres.size();
   picture.cylinders = primitives->cylinders.size();
+  picture.ellipsoids = primitives->ellipsoids.size();
 
   const View view = makeView(scene.camera, options_.size, primitives->bounds());
   RenderSettings settings;
   settings.samples = options_.samples;
+  settings.shadows = options_.shadows;
+  settings.occlusion = options_.occlusion;
+  if (settings.occlusion.on) scene.lighting = ambientLighting();
+  Lighting& light = scene.lighting;
+  light.key.intensity = options_.keyLight.value_or(light.key.intensity);
+  light.fill.intensity = options_.fillLight.value_or(light.fill.intensity);
+  light.ambient = options_.ambientLight.value_or(light.ambient);
+  light.specular = options_.highlight.value_or(light.specular);
+  settings.lines = options_.lines;
+  settings.depthUnsharp = options_.depthUnsharp;
+  settings.fog = options_.fog;
   progress_.start(fmt::format("{} -> {}", file, output));
   Renderer& draw = renderer();
   draw.setPrimitives(std::move(primitives));
   TimedSink sink(*image, report_.encodeSeconds);
-  draw.renderPicture(view, scene.lighting, scene.background, settings, imageOptions.format, sink,
+  draw.renderPicture(view, scene.lighting, scene.background, settings,
+                     {imageOptions.format, imageOptions.layers}, sink,
                      [this](double share) { progress_.update(share); });
   {
     const Timed timed(report_.encodeSeconds);
@@ -277,13 +295,20 @@ void RenderRun::drawPicture(const std::string& file, const std::string& output, 
   report_.pictures.push_back(std::move(picture));
 }
 
-ImageFileOptions RenderRun::imageOptionsFor(const std::string& file, const std::string& output) const {
+ImageFileOptions RenderRun::imageOptionsFor(const std::string& file, const std::string& output,
+                                            const Scene& scene) const {
+  constexpr std::size_t kExactInFloat = std::size_t{1} << 24;
+  std::size_t ids = 0;
+  for (const SceneObject& object : scene.objects)
+    ids += object.molecule->atomCount() * object.placements.size();
   ImageFileOptions image;
   image.size = options_.size;
   image.format = imageTypeOf(output) == ImageType::exr ? PixelFormat::rgbaFloat
                  : options_.bitDepth == 16             ? PixelFormat::rgba16
                                                        : PixelFormat::rgba8;
   image.alpha = options_.background.transparent;
+  image.layers = options_.layers;
+  image.wideIds = ids > kExactInFloat;
   image.dpi = options_.dpi;
   // The names of folders and of the output are left out: they say nothing about the picture, and the same
   // picture should be the same bytes wherever it is made.

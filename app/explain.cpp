@@ -18,9 +18,10 @@ std::string bytesText(std::uint64_t bytes) {
 
 void explainPictures(const RunReport& report, std::string& text) {
   for (const PictureReport& picture : report.pictures)
-    fmt::format_to(std::back_inserter(text), "{} -> {}: {} atoms, {} bonds; {} spheres, {} cylinders\n",
+    fmt::format_to(std::back_inserter(text), "{} -> {}: {} atoms, {} bonds; {} spheres, {} cylinders{}\n",
                    picture.input, picture.output, picture.atoms, picture.bonds, picture.spheres,
-                   picture.cylinders);
+                   picture.cylinders,
+                   picture.ellipsoids > 0 ? fmt::format(", {} ellipsoids", picture.ellipsoids) : "");
   fmt::format_to(std::back_inserter(text), "{}x{} pixels, {} samples each, {} tile{}\n", report.size.width,
                  report.size.height, report.samples, report.render.tiles,
                  report.render.tiles == 1 ? "" : "s");

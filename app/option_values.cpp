@@ -71,6 +71,13 @@ double parseNumber(std::string_view option, std::string_view value, double least
   return *number;
 }
 
+double parseProbability(std::string_view option, std::string_view value) {
+  const std::optional<double> number = numberFrom<double>(value);
+  if (!number || !(*number > 0 && *number < 1))
+    throwBadValue(option, value, "a number between 0 and 1, as 0.5 or 0.99");
+  return *number;
+}
+
 int parseInteger(std::string_view option, std::string_view value, int least, int most) {
   const std::optional<int> number = numberFrom<int>(value);
   if (!number || *number < least || *number > most)
@@ -147,6 +154,57 @@ Coloring parseColoring(std::string_view option, std::string_view value) {
     throwBadValue(option, value, "element, chain, residue, bfactor, plddt, rainbow or a colour as '#RRGGBB'");
   }
   return coloring;
+}
+
+Layers parseLayers(std::string_view option, std::string_view value) {
+  Layers layers;
+  layers.color = false;
+  for (const std::string_view word : split(value, ",")) {
+    bool Layers::*const layer = parseChoice<bool Layers::*>(option, word,
+                                                            {{"color", &Layers::color},
+                                                             {"albedo", &Layers::albedo},
+                                                             {"normal", &Layers::normal},
+                                                             {"depth", &Layers::depth},
+                                                             {"distance", &Layers::distance},
+                                                             {"id", &Layers::id}});
+    layers.*layer = true;
+  }
+  return layers;
+}
+
+void parseOutlines(std::string_view option, std::string_view value, SilhouetteSettings& lines) {
+  static constexpr std::array<std::string_view, 6> kWords{"silhouettes", "creases", "chains",
+                                                          "residues",    "atoms",   "off"};
+  lines.silhouettes = lines.creases = false;
+  lines.groups = LineGroups::none;
+  const std::vector<std::string_view> words = split(value, ",");
+  for (const std::string_view word : words) {
+    const std::size_t which = parseWord(option, word, kWords);
+    if (which == 5 && words.size() > 1) throwBadValue(option, value, "off alone, or names of lines");
+    // Where residues border on each other, chains do, too: the finest division counts.
+    constexpr LineGroups kGroups[] = {LineGroups::chains, LineGroups::residues, LineGroups::atoms};
+    if (which >= 2 && which <= 4) lines.groups = std::max(lines.groups, kGroups[which - 2]);
+    lines.silhouettes = lines.silhouettes || which == 0;
+    lines.creases = lines.creases || which == 1;
+  }
+}
+
+void parseUnsharpRadius(std::string_view option, std::string_view value, DepthUnsharpSettings& unsharp) {
+  unsharp.radiusInAngstrom = !value.ends_with('%');
+  if (unsharp.radiusInAngstrom) {
+    unsharp.radius = parseNumber(option, value, 0.001, 100000, "Angstrom, or percent as in 2%");
+  } else {
+    unsharp.radius =
+        0.01 * parseNumber(option, value.substr(0, value.size() - 1), 0.01, 50, "percent of the picture");
+  }
+}
+
+Rgb parseColor(std::string_view option, std::string_view value) {
+  const std::string word = folded(value);
+  if (word == "white") return 0xFFFFFF;
+  if (word == "black") return 0x000000;
+  if (const std::optional<Rgb> rgb = colorFromHex(value)) return *rgb;
+  throwBadValue(option, value, "white, black or a colour as '#RRGGBB'");
 }
 
 Background parseBackground(std::string_view option, std::string_view value) {

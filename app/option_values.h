@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "core/image.h"
+#include "core/render_settings.h"
 #include "core/scene.h"
 #include "io/structure_reader.h"
 
@@ -37,11 +38,22 @@ ImageSize parseSize(std::string_view option, std::string_view value);
 
 /// "NxMxK", each at least 1, at most a million copies.
 glm::ivec3 parseCopies(std::string_view option, std::string_view value);
+/// Between 0 and 1, neither included.
+double parseProbability(std::string_view option, std::string_view value);
 
 /// "#RGB" or "#RRGGBB"; the # may be missing, because a shell takes an unquoted one for a comment.
 std::optional<Rgb> colorFromHex(std::string_view value);
 
 Coloring parseColoring(std::string_view option, std::string_view value);
+/// Names separated by commas, out of color, albedo, normal, depth, distance, id.
+Layers parseLayers(std::string_view option, std::string_view value);
+/// Names separated by commas, out of silhouettes, creases and one of chains, residues, atoms; or off. Only
+/// these members of `lines` are set.
+void parseOutlines(std::string_view option, std::string_view value, SilhouetteSettings& lines);
+/// A number of Angstrom, or percent of the picture's smaller side with "%".
+void parseUnsharpRadius(std::string_view option, std::string_view value, DepthUnsharpSettings& unsharp);
+/// A colour as '#RRGGBB', white or black.
+Rgb parseColor(std::string_view option, std::string_view value);
 Background parseBackground(std::string_view option, std::string_view value);
 Orientation parseOrientation(std::string_view option, std::string_view value);
 

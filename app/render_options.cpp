@@ -4,8 +4,10 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <sstream>
 
 #include "app/command_line.h"
+#include "app/style.h"
 #include "core/error.h"
 #include "core/render_settings.h"
 #include "io/image_writer.h"
@@ -78,10 +80,15 @@ void addOutputOptions(CLI::App& app, RenderOptions& o) {
               [&o](auto& n, auto& v) { o.background = parseBackground(n, v); });
   group.value("--samples", "N", "Rays per pixel, 1 to 256: more gives smoother edges [16]",
               [&o](auto& n, auto& v) { o.samples = parseInteger(n, v, 1, kMaxSamples); });
-  group.value("--depth", "8|16", "Bits per channel of a PNG [8]; EXR has half floats",
+  group.value("--depth", "8|16", "Bits per channel of a PNG [8]; EXR is floating point",
               [&o](auto& n, auto& v) {
                 o.bitDepth = parseChoice<int>(n, v, {{"8", 8}, {"16", 16}});
               });
+  group.value("--channels", "LIST",
+              "What an EXR holds: color, and data of each pixel's centre\n"
+              "ray: albedo, normal, depth, distance (Angstrom), id (atom);\n"
+              "names separated by commas [color]",
+              [&o](auto& n, auto& v) { o.layers = parseLayers(n, v); });
   group.value("--dpi", "N", "Printing resolution recorded in the file, pixels per inch",
               [&o](auto& n, auto& v) { o.dpi = parseNumber(n, v, 1, 100000, "pixels per inch"); });
 }
@@ -89,14 +96,16 @@ void addOutputOptions(CLI::App& app, RenderOptions& o) {
 void addLookOptions(CLI::App& app, RenderOptions& o) {
   OptionGroup group(app, "Look");
   group.value("--representation", "NAME",
-              "spacefill (van der Waals spheres), ball_and_stick or\n"
-              "licorice [spacefill: it shows any molecule, of any size]",
+              "spacefill (van der Waals spheres), ball_and_stick, licorice\n"
+              "or ellipsoids (atomic displacements, as ORTEP draws them)\n"
+              "[spacefill: it shows any molecule, of any size]",
               [&o](auto& n, auto& v) {
                 o.representation =
                     parseChoice<Representation>(n, v,
                                                 {{"spacefill", Representation::spacefill},
                                                  {"ball_and_stick", Representation::ballAndStick},
-                                                 {"licorice", Representation::licorice}});
+                                                 {"licorice", Representation::licorice},
+                                                 {"ellipsoids", Representation::ellipsoids}});
               });
   group.value("--color,--colour", "SCHEME",
               "element (Jmol), chain, residue (chemical kind), bfactor,\n"
@@ -119,8 +128,109 @@ void addLookOptions(CLI::App& app, RenderOptions& o) {
               });
   group.value("--ball-scale", "F", "Radius of a ball as a share of the atom's [0.25]",
               [&o](auto& n, auto& v) { o.ballScale = parseNumber(n, v, 0.01, 10); });
-  group.value("--stick-radius", "R", "Radius of sticks in Angstrom [0.15; licorice 0.25]",
+  group.value("--stick-radius", "R", "Radius of sticks in Angstrom [0.15; licorice 0.25;\nellipsoids 0.06]",
               [&o](auto& n, auto& v) { o.stickRadius = parseNumber(n, v, 0.001, 100, "Angstrom"); });
+  group.value("--probability", "P",
+              "How likely an atom is inside its displacement ellipsoid,\nbetween 0 and 1 [0.5]",
+              [&o](auto& n, auto& v) { o.probability = parseProbability(n, v); });
+}
+
+// What the styles stand for, a line each.
+std::string styleHelp() {
+  std::string help = "A look with a name; options given beside it have their way:";
+  for (const Style& style : styles()) {
+    help += "\n" + std::string(style.name) + ": ";
+    std::size_t width = style.name.size() + 2;
+    std::istringstream words{std::string(style.options.empty() ? "no effects [the default]" : style.options)};
+    for (std::string word; words >> word; width += word.size() + 1) {
+      if (width + word.size() > 60) {
+        help += "\n  ";
+        width = 2;
+      }
+      help += word + " ";
+    }
+  }
+  return help;
+}
+
+void addStyleOption(CLI::App& app) {
+  OptionGroup group(app, "Style");
+  group.value("--style", "NAME", styleHelp(), [](auto&, auto&) {});  // withStyle() has seen to it
+}
+
+void addLightOptions(CLI::App& app, RenderOptions& o) {
+  OptionGroup group(app, "Light");
+  const auto light = [&](const char* name, const char* help, std::optional<double>& target) {
+    group.value(name, "F", help, [&target](auto& n, auto& v) { target = parseNumber(n, v, 0, 100); });
+  };
+  light("--key-light", "Light from the upper left; it casts the shadows [0.76]", o.keyLight);
+  light("--fill-light", "Light from the right [0.16]", o.fillLight);
+  light("--ambient-light", "Light from all around [0.12; more with --occlusion]", o.ambientLight);
+  light("--highlight", "Strength of highlights [0.16]", o.highlight);
+  group.value("--shadows", "off|hard|soft", "Shadows of the key light [off]", [&o](auto& n, auto& v) {
+    o.shadows.mode = parseChoice<ShadowMode>(
+        n, v, {{"off", ShadowMode::off}, {"hard", ShadowMode::hard}, {"soft", ShadowMode::soft}});
+  });
+  group.value("--penumbra", "WIDTH", "Width of a soft shadow's edge in Angstrom [2]",
+              [&o](auto& n, auto& v) { o.shadows.penumbra = parseNumber(n, v, 0, 1000, "Angstrom"); });
+  group.value("--shadow-samples", "N",
+              "Samples of a soft shadow per ray, 1 to 256 [64]; 16 are\ntaken where they agree",
+              [&o](auto& n, auto& v) { o.shadows.samples = parseInteger(n, v, 1, kMaxShadowSamples); });
+  group.value("--occlusion", "on|off",
+              "Ambient occlusion: pockets and creases become dark, and\n"
+              "more of the light comes from all around [off]",
+              [&o](auto& n, auto& v) {
+                o.occlusion.on = parseChoice<bool>(n, v, {{"on", true}, {"off", false}});
+              });
+  group.value("--occlusion-radius", "R",
+              "How far things occlude each other, in Angstrom; they do in\n"
+              "full up to half of it; 0 = without limit [30]",
+              [&o](auto& n, auto& v) { o.occlusion.radius = parseNumber(n, v, 0, 1e6, "Angstrom"); });
+  group.value("--occlusion-strength", "F", "0 = none, 1 = as computed [1]",
+              [&o](auto& n, auto& v) { o.occlusion.strength = parseNumber(n, v, 0, 1); });
+  group.value("--occlusion-directions", "N", "From how many sides light comes: 8, 16, 32, 64 or 128 [64]",
+              [&o](auto& n, auto& v) {
+                o.occlusion.directions =
+                    parseChoice<int>(n, v, {{"8", 8}, {"16", 16}, {"32", 32}, {"64", 64}, {"128", 128}});
+              });
+}
+
+void addLineOptions(CLI::App& app, RenderOptions& o) {
+  OptionGroup group(app, "Lines and depth");
+  group.value("--outlines", "LIST",
+              "Lines: silhouettes (in front of what lies behind), creases\n"
+              "(where surfaces meet), chains, residues or atoms (between\n"
+              "them); names separated by commas, or off [off]",
+              [&o](auto& n, auto& v) { parseOutlines(n, v, o.lines); });
+  group.value("--line-width", "PIXELS", "Width of lines, 0.5 to 16 [1.5]",
+              [&o](auto& n, auto& v) { o.lines.width = parseNumber(n, v, 0.5, kMaxLineWidth, "pixels"); });
+  group.value("--line-color,--line-colour", "COLOR", "black, white or '#RRGGBB' [black]",
+              [&o](auto& n, auto& v) { o.lines.color = parseColor(n, v); });
+  group.value("--line-strength", "F", "Opacity of lines, 0 to 1 [1]",
+              [&o](auto& n, auto& v) { o.lines.strength = parseNumber(n, v, 0, 1); });
+  group.value("--line-gap", "DEPTH", "A smaller step in depth raises no silhouette, Angstrom [1]",
+              [&o](auto& n, auto& v) { o.lines.gap = parseNumber(n, v, 0, 100000, "Angstrom"); });
+  group.value("--crease-angle", "DEGREES", "Surfaces that meet at a smaller angle raise no crease [30]",
+              [&o](auto& n, auto& v) { o.lines.creaseAngleDeg = parseNumber(n, v, 1, 180, "degrees"); });
+  group.value("--depth-unsharp", "off|both|halo",
+              "Brighten what lies in front of its surroundings and darken\n"
+              "what lies behind, or only darken (halo) [off]",
+              [&o](auto& n, auto& v) {
+                o.depthUnsharp.mode = parseChoice<UnsharpMode>(
+                    n, v,
+                    {{"off", UnsharpMode::off}, {"both", UnsharpMode::both}, {"halo", UnsharpMode::halo}});
+              });
+  group.value("--unsharp-strength", "F", "Strength of depth unsharp masking, 0 to 100 [2]",
+              [&o](auto& n, auto& v) { o.depthUnsharp.strength = parseNumber(n, v, 0, 100); });
+  group.value("--unsharp-radius", "R",
+              "Its radius: Angstrom, or a share of the picture's smaller\nside as in 3% [2%]",
+              [&o](auto& n, auto& v) { parseUnsharpRadius(n, v, o.depthUnsharp); });
+  group.value("--fog", "F", "Fade what is far away into the background, 0 to 1 [0: off]",
+              [&o](auto& n, auto& v) { o.fog.strength = parseNumber(n, v, 0, 1); });
+  group.value("--fog-start", "F", "Where fog begins: 0 = front of the scene, 1 = its back [0.2]",
+              [&o](auto& n, auto& v) { o.fog.start = parseNumber(n, v, -10, 10); });
+  group.value("--fog-end", "F", "Where fog is as strong as it gets [1]",
+              [&o](auto& n, auto& v) { o.fog.end = parseNumber(n, v, -10, 10); });
 }
 
 void addCameraOptions(CLI::App& app, RenderOptions& o) {
@@ -190,9 +300,14 @@ void requireConsistent(const CLI::App& app, RenderOptions& o) {
     throw UsageError("no input; give a structure file, as in meniscus render FILE -o OUT.png");
   if (o.output.empty()) throw UsageError("no output; add the picture's name, as in -o picture.png");
   if (std::filesystem::is_directory(o.output)) requireWritable(o.output);  // says that it is a folder
+  if (!(o.fog.start < o.fog.end))
+    throw UsageError("--fog-start: must be less than --fog-end (they are 0.2 and 1 unless given)");
   const ImageType type = imageTypeOf(o.output);
   if (type == ImageType::exr && app.count("--depth") > 0)
-    throw UsageError("--depth: is for PNG; OpenEXR pictures always have 16-bit floats");
+    throw UsageError(
+        "--depth: is for PNG; OpenEXR pictures are floating point (depth as a layer: --channels depth)");
+  if (type != ImageType::exr && o.layers != Layers{})
+    throw UsageError("--channels: is for OpenEXR; a PNG holds the colour only, so let OUT end in .exr");
   if (!o.shaderDir.empty() && !std::filesystem::is_directory(o.shaderDir))
     throw UsageError("--shader-dir: '" + o.shaderDir.string() + "' is not a folder; give a copy of shaders/");
 }
@@ -222,10 +337,13 @@ std::optional<RenderOptions> parseRenderOptions(const std::vector<std::string>& 
       ->type_name("FILE...");
   addOutputOptions(*app, options);
   addLookOptions(*app, options);
+  addStyleOption(*app);
+  addLightOptions(*app, options);
+  addLineOptions(*app, options);
   addCameraOptions(*app, options);
   addStructureOptions(*app, options);
   addOtherOptions(*app, options);
-  if (!parseCommandLine(*app, arguments)) return std::nullopt;
+  if (!parseCommandLine(*app, withStyle(arguments))) return std::nullopt;
   requireConsistent(*app, options);
   options.pictureOptions = pictureOptionsOf(*app);
   return options;

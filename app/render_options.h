@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/option_values.h"
+#include "core/render_settings.h"
 #include "core/scene.h"
 #include "io/structure_reader.h"
 #include "render/gl/context.h"
@@ -26,6 +27,7 @@ struct RenderOptions {
   Coloring coloring;
   RadiusSet radii = RadiusSet::bondi;
   std::optional<double> ballScale, stickRadius;  ///< nothing = the representation's own
+  double probability = 0.5;                      ///< of displacement ellipsoids, see SceneObject
 
   Orientation orientation;
   glm::dvec3 rotationDeg{0.0};
@@ -37,6 +39,13 @@ struct RenderOptions {
   ImageSize size;
   int samples = 16;
   Background background;
+  std::optional<double> keyLight, fillLight, ambientLight, highlight;  ///< nothing = the default
+  ShadowSettings shadows;
+  OcclusionSettings occlusion;
+  SilhouetteSettings lines;
+  DepthUnsharpSettings depthUnsharp;
+  FogSettings fog;
+  Layers layers;     ///< EXR; a PNG holds the colour only
   int bitDepth = 8;  ///< PNG: 8 or 16
   double dpi = 0;    ///< 0 = not written
 

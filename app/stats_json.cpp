@@ -47,7 +47,8 @@ std::string statsAsJson(const RunReport& report) {
                                 {"atoms", picture.atoms},
                                 {"bonds", picture.bonds},
                                 {"spheres", picture.spheres},
-                                {"cylinders", picture.cylinders}});
+                                {"cylinders", picture.cylinders},
+                                {"ellipsoids", picture.ellipsoids}});
   json["failures"] = report.failures;
   json["seconds"] = secondsOf(report);
   json["cpuSeconds"] = report.cpuSeconds;

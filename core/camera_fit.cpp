@@ -5,39 +5,11 @@
 #include <cmath>
 #include <limits>
 
+#include "core/symmetric_eigen.h"
+
 namespace meniscus {
 
 namespace {
-
-struct Eigen3 {
-  glm::dvec3 values;
-  glm::dmat3 vectors;  // columns
-};
-
-// Cyclic Jacobi rotations (Golub & Van Loan, Matrix Computations, 8.5); `m` symmetric.
-Eigen3 eigenDecomposition(glm::dmat3 m) {
-  glm::dmat3 v(1.0);
-  for (int sweep = 0; sweep < 32; ++sweep) {
-    const double off = m[0][1] * m[0][1] + m[0][2] * m[0][2] + m[1][2] * m[1][2];
-    if (off == 0) break;
-    for (int p = 0; p < 2; ++p) {
-      for (int q = p + 1; q < 3; ++q) {
-        if (m[p][q] == 0) continue;
-        const double tau = (m[q][q] - m[p][p]) / (2 * m[p][q]);
-        const double t = (tau >= 0 ? 1 : -1) / (std::abs(tau) + std::hypot(1.0, tau));
-        const double c = 1 / std::hypot(1.0, t);
-        glm::dmat3 turn(1.0);
-        turn[p][p] = turn[q][q] = c;
-        turn[q][p] = t * c;
-        turn[p][q] = -t * c;
-        m = glm::transpose(turn) * m * turn;
-        m[p][q] = m[q][p] = 0;
-        v = v * turn;
-      }
-    }
-  }
-  return {{m[0][0], m[1][1], m[2][2]}, v};
-}
 
 // An axis has no sign of its own: take the one along which the distribution has its longer tail.
 glm::dvec3 withSign(glm::dvec3 axis, std::span<const FitSphere> spheres, glm::dvec3 mean) {
@@ -71,7 +43,7 @@ glm::dquat principalAxes(std::span<const FitSphere> spheres, bool tall) {
     const glm::dvec3 d = s.center - mean;
     covariance += glm::outerProduct(d, d);
   }
-  const Eigen3 eigen = eigenDecomposition(covariance);
+  const SymmetricEigen eigen = symmetricEigen(covariance);
   std::array<int, 3> order{0, 1, 2};
   std::stable_sort(order.begin(), order.end(),
                    [&](int a, int b) { return eigen.values[a] > eigen.values[b]; });

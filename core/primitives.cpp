@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/atom_colors.h"
+#include "core/displacement.h"
 #include "core/error.h"
 
 namespace meniscus {
@@ -13,7 +14,30 @@ namespace {
 
 constexpr std::uint32_t kNotDrawn = 0;
 
-float drawnRadius(const SceneObject& object, std::size_t atom) {
+// Radius of an atom without a displacement among ellipsoids [Å].
+constexpr double kUnknownDisplacement = 0.1;
+
+// Ellipsoids of an object's atoms at its probability; empty for the other representations.
+class Ellipsoids {
+ public:
+  explicit Ellipsoids(const SceneObject& object) {
+    if (object.representation != Representation::ellipsoids) return;
+    const double scale = displacementScale(object.probability);
+    displacements_ = displacementsOf(*object.molecule);
+    for (Displacement& d : displacements_)
+      d.axes = d.source == DisplacementSource::none ? glm::dmat3(kUnknownDisplacement) : d.axes * scale;
+  }
+  float longest(std::size_t atom) const {
+    return static_cast<float>(glm::length(displacements_[atom].axes[0]));
+  }
+  bool isSphere(std::size_t atom) const { return displacements_[atom].isotropic; }
+  const glm::dmat3& axes(std::size_t atom) const { return displacements_[atom].axes; }
+
+ private:
+  std::vector<Displacement> displacements_;
+};
+
+float drawnRadius(const SceneObject& object, const Ellipsoids& ellipsoids, std::size_t atom) {
   const float vdw = vanDerWaalsRadius(object.molecule->elements[atom], object.radii);
   switch (object.representation) {
     case Representation::spacefill:
@@ -22,8 +46,21 @@ float drawnRadius(const SceneObject& object, std::size_t atom) {
       return vdw * static_cast<float>(object.ballScale);
     case Representation::licorice:
       return static_cast<float>(object.licoriceRadius);
+    case Representation::ellipsoids:
+      return ellipsoids.longest(atom);
   }
   return vdw;
+}
+
+float bondRadius(const SceneObject& object) {
+  switch (object.representation) {
+    case Representation::licorice:
+      return static_cast<float>(object.licoriceRadius);
+    case Representation::ellipsoids:
+      return static_cast<float>(object.ellipsoidStickRadius);
+    default:
+      return static_cast<float>(object.stickRadius);
+  }
 }
 
 glm::dvec3 placed(const Placement& placement, const glm::dvec3& position) {
@@ -58,29 +95,46 @@ glm::dvec3 middleOf(const Scene& scene) {
 
 // Adds one placement of an object; `ids` is scratch: the id of each atom drawn by this placement.
 void addPlacement(const SceneObject& object, const Placement& placement, const std::vector<Rgb>& colors,
-                  std::vector<std::uint32_t>& ids, std::uint32_t firstId, Primitives& out) {
+                  const Ellipsoids& ellipsoids, std::vector<std::uint32_t>& ids, std::uint32_t firstId,
+                  Primitives& out) {
   const Molecule& molecule = *object.molecule;
   const bool bonds = needsBonds(object.representation);
+  const glm::dmat3 turn(placement.transform);
   std::vector<glm::vec3> centers(bonds ? molecule.atomCount() : 0);
   if (bonds) ids.assign(molecule.atomCount(), kNotDrawn);
 
   forEachAtom(molecule, placement, [&](std::uint32_t atom) {
     const glm::vec3 center(placed(placement, molecule.positions[atom]) - out.origin);
     const std::uint32_t id = firstId + atom;
-    out.spheres.push_back({center, drawnRadius(object, atom), colors[atom], id});
+    if (object.representation == Representation::ellipsoids && !ellipsoids.isSphere(atom)) {
+      const glm::dmat3 axes = turn * ellipsoids.axes(atom);
+      out.ellipsoids.push_back({center, static_cast<float>(glm::length(axes[2])), glm::vec3(axes[0]),
+                                glm::vec3(axes[1]), colors[atom], id});
+    } else {
+      out.spheres.push_back({center, drawnRadius(object, ellipsoids, atom), colors[atom], id});
+    }
     if (bonds) {
       centers[atom] = center;
       ids[atom] = id;
     }
   });
   if (!bonds) return;
-  const auto radius = static_cast<float>(
-      object.representation == Representation::licorice ? object.licoriceRadius : object.stickRadius);
+  const float radius = bondRadius(object);
   for (const Bond& bond : molecule.bonds) {
     if (ids[bond.a] == kNotDrawn || ids[bond.b] == kNotDrawn) continue;
     out.cylinders.push_back(
         {centers[bond.a], radius, centers[bond.b], colors[bond.a], colors[bond.b], ids[bond.a], ids[bond.b]});
   }
+}
+
+// Adds the groups of all ids of one placement.
+void addGroups(const Molecule& molecule, LineGroups groups, std::uint32_t& nextGroup,
+               std::vector<std::uint32_t>& out) {
+  const bool chains = groups == LineGroups::chains;
+  for (std::size_t atom = 0; atom < molecule.atomCount(); ++atom) {
+    out.push_back(nextGroup + (chains ? molecule.chainOf(atom) : molecule.residueOf[atom]));
+  }
+  nextGroup += static_cast<std::uint32_t>(chains ? molecule.chains.size() : molecule.residues.size());
 }
 
 }  // namespace
@@ -89,13 +143,14 @@ bool needsBonds(Representation representation) {
   return representation != Representation::spacefill;
 }
 
-Primitives buildPrimitives(const Scene& scene) {
+Primitives buildPrimitives(const Scene& scene, LineGroups groups) {
   Primitives out;
   out.origin = middleOf(scene);
-  std::size_t count = 0, ids = 0;
+  std::size_t spheres = 0, ids = 0;
   for (const SceneObject& object : scene.objects) {
     for (const Placement& placement : object.placements) {
-      forEachAtom(*object.molecule, placement, [&](std::uint32_t) { ++count; });
+      if (object.representation != Representation::ellipsoids)
+        forEachAtom(*object.molecule, placement, [&](std::uint32_t) { ++spheres; });
       ids += object.molecule->atomCount();
     }
   }
@@ -103,14 +158,18 @@ Primitives buildPrimitives(const Scene& scene) {
     throw InputError(
         "the scene has more than 4,294,967,294 atoms; draw a part of it (--select, fewer copies)");
   }
-  out.spheres.reserve(count);
+  out.spheres.reserve(spheres);
 
-  std::uint32_t nextId = 1;
+  const bool grouped = groups == LineGroups::residues || groups == LineGroups::chains;
+  if (grouped) out.groups.assign(1, 0);
+  std::uint32_t nextId = 1, nextGroup = 1;
   std::vector<std::uint32_t> scratch;
   for (const SceneObject& object : scene.objects) {
     const std::vector<Rgb> colors = colorAtoms(*object.molecule, object.coloring);
+    const Ellipsoids ellipsoids(object);
     for (const Placement& placement : object.placements) {
-      addPlacement(object, placement, colors, scratch, nextId, out);
+      addPlacement(object, placement, colors, ellipsoids, scratch, nextId, out);
+      if (grouped) addGroups(*object.molecule, groups, nextGroup, out.groups);
       nextId += static_cast<std::uint32_t>(object.molecule->atomCount());
     }
   }
@@ -118,7 +177,7 @@ Primitives buildPrimitives(const Scene& scene) {
 }
 
 BoundingSphere Primitives::bounds() const {
-  if (spheres.empty() && cylinders.empty()) return {origin, 0.0};
+  if (empty()) return {origin, 0.0};
   glm::vec3 low(std::numeric_limits<float>::infinity()), high(-low);
   const auto grow = [&](glm::vec3 p, float r) {
     low = glm::min(low, p - r);
@@ -129,6 +188,7 @@ BoundingSphere Primitives::bounds() const {
     grow(c.a, c.radius);
     grow(c.b, c.radius);
   }
+  for (const EllipsoidPrimitive& e : ellipsoids) grow(e.center, glm::length(e.axisA));
   const glm::vec3 middle = (low + high) * 0.5f;
   double radius = 0;
   for (const SpherePrimitive& s : spheres) {
@@ -138,11 +198,15 @@ BoundingSphere Primitives::bounds() const {
     const float reach = std::max(glm::length(c.a - middle), glm::length(c.b - middle));
     radius = std::max(radius, static_cast<double>(reach + c.radius));
   }
+  for (const EllipsoidPrimitive& e : ellipsoids) {
+    radius = std::max(radius, static_cast<double>(glm::length(e.center - middle) + glm::length(e.axisA)));
+  }
   return {origin + glm::dvec3(middle), radius};
 }
 
 std::vector<FitSphere> fitSpheres(const SceneObject& object, const std::vector<std::uint32_t>& atoms) {
   std::vector<FitSphere> out;
+  const Ellipsoids ellipsoids(object);
   std::vector<bool> chosen;
   if (!atoms.empty()) {
     chosen.resize(object.molecule->atomCount());
@@ -152,7 +216,7 @@ std::vector<FitSphere> fitSpheres(const SceneObject& object, const std::vector<s
     forEachAtom(*object.molecule, placement, [&](std::uint32_t atom) {
       if (!chosen.empty() && !chosen[atom]) return;
       out.push_back({placed(placement, object.molecule->positions[atom]),
-                     static_cast<double>(drawnRadius(object, atom))});
+                     static_cast<double>(drawnRadius(object, ellipsoids, atom))});
     });
   }
   return out;

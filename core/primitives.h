@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/camera_fit.h"
+#include "core/render_settings.h"
 #include "core/scene.h"
 #include "core/view.h"
 
@@ -28,17 +29,31 @@ struct CylinderPrimitive {
   std::uint32_t idA, idB;
 };
 
+/// Three perpendicular semi-axes, of which the third is given by its length.
+struct EllipsoidPrimitive {
+  glm::vec3 center;     ///< relative to Primitives::origin [Å]
+  float shortest;       ///< length of the third semi-axis [Å]
+  glm::vec3 axisA;      ///< longest semi-axis [Å]
+  glm::vec3 axisB;      ///< perpendicular to axisA, at least as long as the third [Å]
+  std::uint32_t color;  ///< 0xRRGGBB, sRGB
+  std::uint32_t id;
+};
+
 struct Primitives {
   glm::dvec3 origin{0.0};  ///< world position of (0,0,0) [Å], near the middle of the scene
   std::vector<SpherePrimitive> spheres;
   std::vector<CylinderPrimitive> cylinders;
+  std::vector<EllipsoidPrimitive> ellipsoids;
+  std::vector<std::uint32_t> groups;  ///< by id; [0] = 0 and nobody else's; empty = not asked for
 
+  bool empty() const { return spheres.empty() && cylinders.empty() && ellipsoids.empty(); }
   BoundingSphere bounds() const;  ///< world space
 };
 
-/// All objects of a scene. Ids number the atoms of the first placement of the first object 1, 2, ..., and go
-/// on. Throws InputError if more than 2^32 - 1 ids would be needed.
-Primitives buildPrimitives(const Scene& scene);
+/// All objects of a scene; residues or chains get Primitives::groups, which are different in every placement.
+/// Ids number the atoms of the first placement of the first object 1, 2, ..., and go on. Throws InputError if
+/// more than 2^32 - 1 ids would be needed.
+Primitives buildPrimitives(const Scene& scene, LineGroups groups = LineGroups::none);
 
 /// Whether an object's representation draws bonds; if none does, nobody needs to find them.
 bool needsBonds(Representation representation);

@@ -11,20 +11,80 @@ enum class ShadowMode : std::uint8_t { off, hard, soft };
 /// Shadows of the key light.
 struct ShadowSettings {
   ShadowMode mode = ShadowMode::off;
-  double penumbra = 2.0;  ///< width of a soft shadow's edge [Å], > 0
+  double penumbra = 2.0;  ///< width of a soft shadow's edge [Å], >= 0
   int samples = 64;       ///< of the shadow map per ray, soft shadows, 1..kMaxShadowSamples
-  int probes = 8;         ///< if these agree, the others are left out; 0 = all are taken
+  int probes = 16;        ///< if these agree, the others are left out; 0 = all are taken
   bool operator==(const ShadowSettings&) const = default;
+};
+
+/// Lines between neighbouring atoms, residues or chains, however their surfaces meet.
+enum class LineGroups : std::uint8_t { none, chains, residues, atoms };
+
+/// Lines where the depth or the normal jumps, and between groups of atoms.
+struct SilhouetteSettings {
+  bool silhouettes = false;  ///< in front of what lies behind: outlines of objects
+  bool creases = false;      ///< where surfaces meet at an angle
+  LineGroups groups = LineGroups::none;
+  double width = 1.5;              ///< pixels of the final picture, 0.5..kMaxLineWidth
+  double gap = 1.0;                ///< a smaller step in depth raises no silhouette [Å], >= 0
+  double creaseAngleDeg = 30;      ///< least angle between the normals [degrees], 1..180
+  std::uint32_t color = 0x000000;  ///< 0xRRGGBB, sRGB
+  double strength = 1;             ///< opacity of a line, 0..1
+  bool any() const { return silhouettes || creases || groups != LineGroups::none; }
+  bool operator==(const SilhouetteSettings&) const = default;
+};
+
+enum class UnsharpMode : std::uint8_t {
+  off,
+  both,  ///< brightens what lies in front of its surroundings, darkens what lies behind
+  halo   ///< only darkens what lies behind
+};
+
+/// Depth unsharp masking (Luft, Colditz, Deussen 2006).
+struct DepthUnsharpSettings {
+  UnsharpMode mode = UnsharpMode::off;
+  double strength = 2;   ///< brightness per share of the scene's depth range, 0..100
+  double radius = 0.02;  ///< standard deviation of the Gaussian, > 0; see radiusInAngstrom; at most
+                         ///< kMaxUnsharpSigma pixels are used
+  bool radiusInAngstrom =
+      false;  ///< [Å] at the middle of the scene; else a share of the picture's smaller side
+  bool operator==(const DepthUnsharpSettings&) const = default;
+};
+
+/// Fades what is far away into the background. Depths are shares of the scene's depth range, the diameter of
+/// its bounding sphere: 0 = nearest, 1 = farthest.
+struct FogSettings {
+  double strength = 0;  ///< at `end` and beyond, 0..1; 0 = off
+  double start = 0.2;   ///< < end
+  double end = 1.0;
+  bool operator==(const FogSettings&) const = default;
+};
+
+/// Ambient occlusion: what lies around a point takes some of the ambient and the fill light away.
+struct OcclusionSettings {
+  bool on = false;
+  double radius = 30;   ///< [Å]; occluders count in full up to half of it and not beyond it; 0 = all count
+  double strength = 1;  ///< 0..1
+  int directions = 64;  ///< from which light comes: a multiple of 8, 8..kMaxOcclusionDirections
+  double texelSize = 0.5;  ///< of the maps [Å], > 0; larger where a pixel is, or where memory demands it
+  bool operator==(const OcclusionSettings&) const = default;
 };
 
 struct RenderSettings {
   int samples =
       16;  ///< rays per pixel, 1..kMaxSamples; fixed positions, so the same command gives the same bytes
   ShadowSettings shadows;
+  OcclusionSettings occlusion;
+  SilhouetteSettings lines;
+  DepthUnsharpSettings depthUnsharp;
+  FogSettings fog;
   bool operator==(const RenderSettings&) const = default;
 };
 
 inline constexpr int kMaxSamples = 256;
 inline constexpr int kMaxShadowSamples = 256;
+inline constexpr int kMaxOcclusionDirections = 128;
+inline constexpr double kMaxLineWidth = 16;
+inline constexpr double kMaxUnsharpSigma = 340;
 
 }  // namespace meniscus

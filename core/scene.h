@@ -19,7 +19,8 @@ using Rgb = std::uint32_t;  ///< 0xRRGGBB, sRGB
 enum class Representation : std::uint8_t {
   spacefill,     ///< van der Waals spheres
   ballAndStick,  ///< small spheres and thin cylinders
-  licorice       ///< cylinders with rounded ends
+  licorice,      ///< cylinders with rounded ends
+  ellipsoids     ///< displacement ellipsoids and thin cylinders (ORTEP)
 };
 
 enum class ColorScheme : std::uint8_t { element, chain, residue, bFactor, plddt, rainbow, uniform };
@@ -40,6 +41,8 @@ struct SceneObject {
   double ballScale = 0.25;       ///< ball radius as a share of the van der Waals radius (ball and stick)
   double stickRadius = 0.15;     ///< cylinder radius [Å], ball and stick
   double licoriceRadius = 0.25;  ///< cylinder and sphere radius [Å], licorice
+  double ellipsoidStickRadius = 0.06;  ///< cylinder radius [Å], ellipsoids
+  double probability = 0.5;            ///< that an atom is inside its ellipsoid, 0 < p < 1
 };
 
 /// Light from infinity, fixed to the viewer.
@@ -56,6 +59,16 @@ struct Lighting {
   double specular = 0.16;
   double shininess = 60;
 };
+
+/// Light for ambient occlusion: most of it comes from all around, or occlusion would hardly show. As bright
+/// as the default on what nothing occludes.
+inline Lighting ambientLighting() {
+  Lighting lighting;
+  lighting.key.intensity = 0.34;
+  lighting.fill.intensity = 0.10;
+  lighting.ambient = 0.62;
+  return lighting;
+}
 
 struct Background {
   Rgb color = 0xFFFFFF;

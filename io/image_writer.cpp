@@ -29,6 +29,7 @@ std::unique_ptr<ImageFile> ImageFile::create(const std::filesystem::path& path,
                                              const ImageFileOptions& options) {
   MENISCUS_CHECK(options.size.width > 0 && options.size.height > 0);
   if (imageTypeOf(path) == ImageType::exr) return createExrFile(path, options);
+  MENISCUS_CHECK(options.layers == Layers{});
   return createPngFile(path, options);
 }
 

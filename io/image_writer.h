@@ -23,7 +23,10 @@ struct ImageFileOptions {
   ImageSize size;
   PixelFormat format = PixelFormat::rgba8;  ///< png: rgba8 or rgba16; exr: rgbaFloat
   bool alpha = false;  ///< false: the alpha channel is dropped (the background is opaque)
-  double dpi = 0;      ///< PNG pHYs; 0 = not written
+  Layers layers;       ///< png: the colour only
+  /// exr: ids are whole numbers of 32 bits instead of floats, which hold them exactly up to 2^24 only.
+  bool wideIds = false;
+  double dpi = 0;                                             ///< PNG pHYs; 0 = not written
   std::vector<std::pair<std::string, std::string>> metadata;  ///< PNG iTXt / EXR string attributes
 };
 

@@ -86,17 +86,27 @@ void QuadricBuffers::upload(const Primitives& primitives) {
     attribute(vertexArray, 1, 3, GL_FLOAT, offsetof(CylinderPrimitive, b));
     attribute(vertexArray, 2, 4, GL_UNSIGNED_INT, offsetof(CylinderPrimitive, colorA));
   }
+  if (!ellipsoids_.instances.object && !primitives.ellipsoids.empty()) {
+    ellipsoids_ = uploadInstances(primitives.ellipsoids);
+    const GLuint vertexArray = ellipsoids_.vertexArray.name();
+    attribute(vertexArray, 0, 4, GL_FLOAT, offsetof(EllipsoidPrimitive, center));
+    attribute(vertexArray, 1, 3, GL_FLOAT, offsetof(EllipsoidPrimitive, axisA));
+    attribute(vertexArray, 2, 3, GL_FLOAT, offsetof(EllipsoidPrimitive, axisB));
+    attribute(vertexArray, 3, 2, GL_UNSIGNED_INT, offsetof(EllipsoidPrimitive, color));
+  }
 }
 
 void QuadricBuffers::clear() {
   spheres_ = Kind{};
   cylinders_ = Kind{};
+  ellipsoids_ = Kind{};
 }
 
 std::vector<ResourceStats> QuadricBuffers::buffers() const {
   std::vector<ResourceStats> out;
   if (spheres_.instances.object) out.push_back({"spheres", spheres_.instances.bytes});
   if (cylinders_.instances.object) out.push_back({"cylinders", cylinders_.instances.bytes});
+  if (ellipsoids_.instances.object) out.push_back({"ellipsoids", ellipsoids_.instances.bytes});
   return out;
 }
 
@@ -112,6 +122,7 @@ void addQuadrics(FrameGraph& graph, const QuadricBuffers& quadrics, ShaderLibrar
   };
   add(quadrics.spheres(), "sphere");
   add(quadrics.cylinders(), "cylinder");
+  add(quadrics.ellipsoids(), "ellipsoid");
 }
 
 }  // namespace meniscus

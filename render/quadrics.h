@@ -1,5 +1,5 @@
 #pragma once
-// Spheres and cylinders as ray-cast quadrics: a rectangle per primitive, a ray per fragment.
+// Spheres, cylinders and ellipsoids as ray-cast quadrics: a rectangle per primitive, a ray per fragment.
 // Sigg, Weyrich, Botsch, Gross, GPU-Based Ray-Casting of Quadratic Surfaces, PBG 2006,
 // doi 10.2312/SPBG/SPBG06/059-065. Deviations: rectangles instead of point sprites, whose size drivers limit
 // (255 px on llvmpipe); intersection relative to each primitive's centre instead of in window space
@@ -29,9 +29,10 @@ class QuadricBuffers {
   };
   const Kind& spheres() const { return spheres_; }
   const Kind& cylinders() const { return cylinders_; }
+  const Kind& ellipsoids() const { return ellipsoids_; }
 
  private:
-  Kind spheres_, cylinders_;
+  Kind spheres_, cylinders_, ellipsoids_;
 };
 
 /// Adds a pass for each kind of quadric there is. The view's uniform block must be bound

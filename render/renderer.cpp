@@ -4,14 +4,19 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "core/error.h"
 #include "core/light_view.h"
 #include "core/sampling.h"
 #include "render/gbuffer.h"
+#include "render/layers.h"
+#include "render/post/depth_unsharp.h"
+#include "render/post/occlusion.h"
 #include "render/post/resolve.h"
 #include "render/post/shade.h"
 #include "render/post/shadow.h"
+#include "render/post/silhouette.h"
 #include "render/quadrics.h"
 #include "render/view_block.h"
 
@@ -43,14 +48,29 @@ struct TileSize {
   int width, height;
 };
 
-TileSize chooseTileSize(ImageSize picture, int bytesPerRowPixel, int maxTileSize) {
+// Without the margin that is drawn around it.
+TileSize chooseTileSize(ImageSize picture, int bytesPerRowPixel, int maxTileSize, int margin = 0) {
   const gl::Limits limits = gl::queryLimits();
-  int side = std::min({limits.textureSize, limits.viewportWidth, limits.viewportHeight});
+  int side = std::min({limits.textureSize, limits.viewportWidth, limits.viewportHeight}) - 2 * margin;
   if (maxTileSize > 0) side = std::min(side, maxTileSize);
-  const int width = std::min(picture.width, side);
-  const std::int64_t rows = std::min(
-      kTilePixels / width, kBandBytes / (static_cast<std::int64_t>(picture.width) * bytesPerRowPixel));
+  // With a wide margin larger and squarer, or most of what is drawn would be margin.
+  const std::int64_t pixels = std::max(kTilePixels, std::int64_t{16} * margin * margin);
+  int width = std::min(picture.width, side);
+  if (margin > 0 && std::int64_t{4} * margin * (width + 2 * margin) > pixels) {
+    width = std::min(width, static_cast<int>(std::sqrt(static_cast<double>(pixels))) - 2 * margin);
+  }
+  const std::int64_t rows =
+      std::min(pixels / (width + 2 * margin) - 2 * margin,
+               kBandBytes / (static_cast<std::int64_t>(picture.width) * bytesPerRowPixel));
   return {width, static_cast<int>(std::clamp<std::int64_t>(rows, 1, std::min(picture.height, side)))};
+}
+
+// Grown by what its pixels' effects look at, as far as the picture goes.
+Tile withMargin(const Tile& tile, int margin, ImageSize picture) {
+  const int left = std::min(margin, tile.x), below = std::min(margin, tile.y);
+  const int right = std::min(margin, picture.width - tile.x - tile.width);
+  const int above = std::min(margin, picture.height - tile.y - tile.height);
+  return {tile.x - left, tile.y - below, left + tile.width + right, below + tile.height + above};
 }
 
 class Stopwatch {
@@ -72,7 +92,11 @@ struct Frame {
   const View& view;
   RenderSettings settings;
   ShadeSettings shade;
+  Layers layers;
   ShadowMap shadowMap;  // without depth if there are no shadows
+  bool occlusion = false;
+  UnsharpKernel unsharp = {};
+  int margin = 0;  // of a tile: how far its pixels' effects look [pixels]
 };
 
 }  // namespace
@@ -84,6 +108,9 @@ struct Renderer::Impl {
   QuadricBuffers quadrics;
   ShadeUniforms shadeUniforms;
   ShadowUniforms shadowUniforms;
+  OcclusionBuffers occlusionBuffers;
+  SilhouetteUniforms silhouetteUniforms;
+  DepthUnsharpUniforms unsharpUniforms;
   gl::Buffer viewUniforms;
   std::shared_ptr<const Primitives> primitives = std::make_shared<Primitives>();
   gl::Texture* shadowMapTexture = nullptr;  // in use while a picture is drawn
@@ -109,7 +136,7 @@ struct Renderer::Impl {
   }
 
   // One sample of one tile: every pass of the program is named here.
-  void buildFrame(FrameGraph& graph, const Frame& frame, const Tile& tile, TextureRef target) {
+  GBufferRefs buildFrame(FrameGraph& graph, const Frame& frame, const Tile& tile, TextureRef target) {
     const GBufferRefs gbuffer = createGBuffer(graph, tile.width, tile.height);
     addQuadrics(graph, quadrics, shaders, gbuffer);
     LightRefs light;
@@ -119,13 +146,33 @@ struct Renderer::Impl {
     } else {
       graph.leaveOut("pass shadow", "shadows are off");
     }
+    if (frame.occlusion) {
+      light.occlusion = addOcclusion(graph, occlusionBuffers, shaders, gbuffer, tile.width, tile.height);
+    } else {
+      graph.leaveOut("pass occlusion", "ambient occlusion is off");
+    }
+    if (frame.settings.depthUnsharp.mode != UnsharpMode::off) {
+      light.difference = addDepthUnsharp(graph, frame.unsharp, unsharpUniforms, shaders, gbuffer, tile);
+    } else {
+      graph.leaveOut("pass depth unsharp", "depth unsharp masking is off");
+    }
+    if (frame.settings.lines.any()) {
+      light.lines = addSilhouette(graph, frame.settings.lines, silhouetteUniforms, shaders, gbuffer,
+                                  tile.width, tile.height);
+    } else {
+      graph.leaveOut("pass silhouette", "outlines are off");
+    }
     addShade(graph, frame.shade, shadeUniforms, shaders, gbuffer, light, target);
     graph.want(target);
+    return gbuffer;
   }
 
   void drawShadowMap(Frame& frame);
-  void drawTile(const Frame& frame, const Tile& tile, const gl::Texture& picture,
+  void drawOcclusion(Frame& frame);
+  void setEffects(Frame& frame);
+  void drawTile(const Frame& frame, const Tile& part, const gl::Texture& picture, LayerTexels& texels,
                 const std::function<void(double)>& progress);
+  void drawData(const Frame& frame, const Tile& tile, LayerTexels& texels);
   void execute(FrameGraph& graph) { graph.execute(stats, options.timePasses); }
 };
 
@@ -135,6 +182,8 @@ Renderer::~Renderer() = default;
 void Renderer::setPrimitives(std::shared_ptr<const Primitives> primitives) {
   impl_->primitives = std::move(primitives);
   impl_->quadrics.clear();
+  impl_->occlusionBuffers.clear();
+  impl_->silhouetteUniforms.clearGroups();
   impl_->pool.trim();
 }
 
@@ -144,9 +193,10 @@ void Renderer::Impl::drawShadowMap(Frame& frame) {
   const gl::Limits limits = gl::queryLimits();
   const int maxSize =
       std::min({kShadowMapSize, limits.textureSize, limits.viewportWidth, limits.viewportHeight});
+  const ShadowSettings& shadows = frame.settings.shadows;
   const View light =
       makeLightView(frame.view, frame.shade.lighting.key, bounds, pixelFootprint(frame.view, bounds), maxSize,
-                    frame.settings.shadows.penumbra);
+                    shadows.mode == ShadowMode::soft ? shadows.penumbra : 0);
   const Tile whole{0, 0, light.size.width, light.size.height};
   gl::Texture* depth = shadowMapTexture =
       pool.acquire("shadow map", {gl::TextureFormat::depth32f, whole.width, whole.height});
@@ -160,20 +210,70 @@ void Renderer::Impl::drawShadowMap(Frame& frame) {
   frame.shadowMap = {light, depth};
 }
 
-void Renderer::Impl::drawTile(const Frame& frame, const Tile& tile, const gl::Texture& picture,
-                              const std::function<void(double)>& progress) {
+// What the effects of a whole picture share.
+void Renderer::Impl::setEffects(Frame& frame) {
+  RenderSettings& settings = frame.settings;
+  if (primitives->empty()) {
+    settings.lines = {};
+    settings.depthUnsharp = {};
+  }
+  if (settings.lines.any()) {
+    silhouetteUniforms.set(settings.lines, frame.view);
+    silhouetteUniforms.setGroups(primitives->groups);
+  }
+  frame.unsharp = unsharpKernel(unsharpSigma(settings.depthUnsharp, frame.view));
+  frame.margin = std::max(reachOf(settings.lines), reachOf(settings.depthUnsharp, frame.view));
+}
+
+// Counted as a pass, though the processor draws them.
+void Renderer::Impl::drawOcclusion(Frame& frame) {
+  double spent = 0;
+  {
+    Stopwatch watch(spent);
+    occlusionBuffers.set(frame.view, drawOcclusionMaps(*primitives, frame.view, frame.settings.occlusion));
+  }
+  auto pass = std::find_if(stats.passes.begin(), stats.passes.end(),
+                           [](const PassStats& s) { return s.name == "occlusion maps"; });
+  if (pass == stats.passes.end()) pass = stats.passes.insert(pass, {"occlusion maps", 0, 0.0});
+  ++pass->runs;
+  pass->milliseconds += spent;
+  frame.occlusion = true;
+}
+
+// What the rays through the pixels' centres meet, without colour.
+void Renderer::Impl::drawData(const Frame& frame, const Tile& tile, LayerTexels& texels) {
+  setView(frame.view, tile, {0, 0});
+  FrameGraph graph(pool);
+  const GBufferRefs gbuffer = createGBuffer(graph, tile.width, tile.height);
+  addQuadrics(graph, quadrics, shaders, gbuffer);
+  if (!frame.layers.color) graph.leaveOut("pass shade", "no colour is wanted");
+  wantLayers(graph, frame.layers, gbuffer);
+  execute(graph);
+  readLayers(graph, frame.layers, gbuffer, tile, texels);
+}
+
+// `picture` gets the margin of `part`, too. Data comes with the colour where both need the same rays.
+void Renderer::Impl::drawTile(const Frame& frame, const Tile& part, const gl::Texture& picture,
+                              LayerTexels& texels, const std::function<void(double)>& progress) {
+  const Tile tile = withMargin(part, frame.margin, frame.view.size);
+  const bool dataApart = !frame.shade.final || tile != part;
+  if (frame.settings.depthUnsharp.mode != UnsharpMode::off) unsharpUniforms.set(frame.unsharp, tile);
+  if (frame.layers.data() && dataApart) drawData(frame, part, texels);
   const int samples = frame.settings.samples;
   const auto setShadow = [&](int sample) {
     if (frame.shadowMap.depth)
       shadowUniforms.set(frame.settings.shadows, frame.view, frame.shadowMap, sample, samples);
+    if (frame.occlusion) occlusionBuffers.chooseDirections(sample, samples);
   };
   if (frame.shade.final) {
     setView(frame.view, tile, {0, 0});
     setShadow(0);
     FrameGraph graph(pool);
     graph.leaveOut("pass resolve", "one sample per pixel");
-    buildFrame(graph, frame, tile, graph.import("picture", picture, Clear::none));
+    const GBufferRefs gbuffer = buildFrame(graph, frame, tile, graph.import("picture", picture, Clear::none));
+    if (!dataApart) wantLayers(graph, frame.layers, gbuffer);
     execute(graph);
+    if (!dataApart) readLayers(graph, frame.layers, gbuffer, tile, texels);
     return;
   }
   gl::Texture* sum = pool.acquire("sum", {gl::TextureFormat::rgba32f, tile.width, tile.height});
@@ -195,24 +295,37 @@ void Renderer::Impl::drawTile(const Frame& frame, const Tile& tile, const gl::Te
 }
 
 void Renderer::renderPicture(const View& view, const Lighting& lighting, const Background& background,
-                             const RenderSettings& settings, PixelFormat format, RowSink& sink,
+                             const RenderSettings& settings, const PixelLayout& layout, RowSink& sink,
                              const std::function<void(double)>& progress) {
   MENISCUS_CHECK(view.size.width > 0 && view.size.height > 0);
   MENISCUS_CHECK(settings.samples >= 1 && settings.samples <= kMaxSamples);
+  MENISCUS_CHECK(!layout.layers.data() || layout.format == PixelFormat::rgbaFloat);
   Impl& r = *impl_;
   r.prepare();
-  Frame frame{
-      view, settings, {lighting, background, settings.samples == 1, format != PixelFormat::rgbaFloat}, {}};
+  Frame frame{view,
+              settings,
+              {lighting, background, settings.occlusion, settings.fog, settings.depthUnsharp, settings.lines,
+               settings.samples == 1, layout.format != PixelFormat::rgbaFloat},
+              layout.layers,
+              {}};
+  const bool color = layout.layers.color;
+  if (color) r.setEffects(frame);
   r.shadeUniforms.set(frame.shade);
-  if (settings.shadows.mode != ShadowMode::off && !r.primitives->spheres.empty()) {
+  if (color && settings.shadows.mode != ShadowMode::off && !r.primitives->empty()) {
     Stopwatch watch(r.stats.drawMs);
     r.drawShadowMap(frame);
   }
+  if (color && settings.occlusion.on && !r.primitives->empty()) {
+    Stopwatch watch(r.stats.drawMs);
+    r.drawOcclusion(frame);
+  }
 
-  const std::size_t pixelBytes = bytesPerPixel(format);
+  const std::size_t pixelBytes = bytesPerPixel(layout);
   const std::size_t rowBytes = pixelBytes * static_cast<std::size_t>(view.size.width);
-  const TileSize tileSize = chooseTileSize(view.size, static_cast<int>(pixelBytes), r.options.maxTileSize);
-  std::vector<std::byte> band;
+  const TileSize tileSize =
+      chooseTileSize(view.size, static_cast<int>(pixelBytes), r.options.maxTileSize, frame.margin);
+  std::vector<std::byte> band, colors;
+  LayerTexels texels;
   const double pixels = static_cast<double>(view.size.width) * view.size.height;
   double drawn = 0;
   for (int top = view.size.height; top > 0; top -= tileSize.height) {
@@ -220,20 +333,35 @@ void Renderer::renderPicture(const View& view, const Lighting& lighting, const B
     band.resize(rowBytes * static_cast<std::size_t>(height));
     for (int x = 0; x < view.size.width; x += tileSize.width) {
       const Tile tile{x, top - height, std::min(tileSize.width, view.size.width - x), height};
-      gl::Texture* picture = r.pool.acquire("picture", {textureFormat(format), tile.width, tile.height});
+      const Tile drawnTile = withMargin(tile, frame.margin, view.size);
+      const int cropX = tile.x - drawnTile.x, cropY = tile.y - drawnTile.y;
+      gl::Texture* picture =
+          color ? r.pool.acquire("picture", {textureFormat(layout.format), drawnTile.width, drawnTile.height})
+                : nullptr;
       {
         Stopwatch watch(r.stats.drawMs);
         const double share = static_cast<double>(tile.width) * tile.height / pixels;
-        r.drawTile(frame, tile, *picture, [&](double done) {
+        const auto drawnOfTile = [&](double done) {
           if (progress) progress(drawn + share * done);
-        });
+        };
+        if (color) {
+          r.drawTile(frame, tile, *picture, texels, drawnOfTile);
+        } else {
+          r.drawData(frame, tile, texels);
+        }
         glFinish();
         drawn += share;
       }
       Stopwatch watch(r.stats.readbackMs);
-      picture->read(tile.width, tile.height, view.size.width,
-                    band.data() + pixelBytes * static_cast<std::size_t>(x));
-      r.pool.release(picture);
+      if (layout.layers.data()) {
+        colors.resize(color ? picture->bytes() : 0);
+        if (color) picture->read(tile.width, tile.height, tile.width, colors.data(), cropX, cropY);
+        storeLayers(layout, view, tile, texels, colors, band.data());
+      } else {
+        picture->read(tile.width, tile.height, view.size.width,
+                      band.data() + pixelBytes * static_cast<std::size_t>(x), cropX, cropY);
+      }
+      if (color) r.pool.release(picture);
       ++r.stats.tiles;
     }
     for (int y = height; y-- > 0;) {
@@ -294,6 +422,10 @@ RenderStats Renderer::stats() const {
   stats.programs = impl_->shaders.compiled();
   stats.compileMs = impl_->shaders.compileMs();
   stats.buffers = impl_->quadrics.buffers();
+  const gl::Buffer& groups = impl_->silhouetteUniforms.groups();
+  if (groups.object) stats.buffers.push_back({"groups", groups.bytes});
+  if (impl_->occlusionBuffers.bytes() > 0)
+    stats.buffers.push_back({"occlusion maps", impl_->occlusionBuffers.bytes()});
   stats.textures = impl_->pool.textures();
   return stats;
 }

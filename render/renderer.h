@@ -35,10 +35,10 @@ class Renderer {
   /// What to draw from now on. Uploads only when a frame needs it.
   void setPrimitives(std::shared_ptr<const Primitives> primitives);
 
-  /// Draws a picture of view.size and hands its rows to `sink` from the top. `progress` gets the finished
-  /// share 0..1.
+  /// Draws a picture of view.size and hands its rows to `sink` from the top. What `layout` leaves out is not
+  /// computed. `progress` gets the finished share 0..1.
   void renderPicture(const View& view, const Lighting& lighting, const Background& background,
-                     const RenderSettings& settings, PixelFormat format, RowSink& sink,
+                     const RenderSettings& settings, const PixelLayout& layout, RowSink& sink,
                      const std::function<void(double)>& progress = {});
 
   /// Draws what the rays through the pixels' centres meet: no shading, nothing that was not asked for.

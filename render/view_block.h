@@ -12,6 +12,7 @@ namespace meniscus {
 /// Part of a picture that is drawn at once: pixel coordinates of its lower left corner, and size.
 struct Tile {
   int x = 0, y = 0, width = 0, height = 0;
+  bool operator==(const Tile&) const = default;
 };
 
 /// primitivesOrigin: Primitives::origin; sampleShift: sampleOffset(). Numbers are split so that hi + lo

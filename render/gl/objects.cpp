@@ -24,6 +24,8 @@ FormatInfo infoOf(TextureFormat format) {
       return {GL_RGBA16, GL_RGBA, GL_UNSIGNED_SHORT, 8};
     case TextureFormat::rgba32f:
       return {GL_RGBA32F, GL_RGBA, GL_FLOAT, 16};
+    case TextureFormat::rg32f:
+      return {GL_RG32F, GL_RG, GL_FLOAT, 8};
     case TextureFormat::rg16:
       return {GL_RG16, GL_RG, GL_UNSIGNED_SHORT, 4};
     case TextureFormat::r16:
@@ -115,13 +117,13 @@ std::uint64_t Texture::bytes() const {
          static_cast<std::uint64_t>(bytesPerTexel(desc.format));
 }
 
-void Texture::read(int width, int height, int rowTexels, void* out) const {
+void Texture::read(int width, int height, int rowTexels, void* out, int x, int y) const {
   const FormatInfo info = infoOf(desc.format);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   glPixelStorei(GL_PACK_ROW_LENGTH, rowTexels);
   const GLsizei size = static_cast<GLsizei>(
       std::min<long long>(static_cast<long long>(rowTexels) * height * info.bytes, 0x7FFFFFFF));
-  glGetTextureSubImage(object.name(), 0, 0, 0, 0, width, height, 1, info.format, info.type, size, out);
+  glGetTextureSubImage(object.name(), 0, x, y, 0, width, height, 1, info.format, info.type, size, out);
   glPixelStorei(GL_PACK_ROW_LENGTH, 0);
 }
 

@@ -46,7 +46,7 @@ struct Buffer {
   void update(const void* data);
 };
 
-enum class TextureFormat : std::uint8_t { rgba8, rgba16, rgba32f, rg16, r16, r32ui, r32f, depth32f };
+enum class TextureFormat : std::uint8_t { rgba8, rgba16, rgba32f, rg32f, rg16, r16, r32ui, r32f, depth32f };
 
 int bytesPerTexel(TextureFormat format);
 
@@ -63,9 +63,9 @@ struct Texture {
 
   static Texture make(const TextureDesc& desc);
   std::uint64_t bytes() const;
-  /// Reads the lower left width x height texels, rows from the bottom, `rowTexels` apart in memory, in the
+  /// Reads width x height texels from (x, y) on, rows from the bottom, `rowTexels` apart in memory, in the
   /// format's own component types. `out` must have room.
-  void read(int width, int height, int rowTexels, void* out) const;
+  void read(int width, int height, int rowTexels, void* out, int x = 0, int y = 0) const;
 };
 
 /// Limits of the current context that decide what can be drawn at once.

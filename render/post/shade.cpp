@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 
+#include "core/error.h"
 #include "render/post/fullscreen.h"
 
 namespace meniscus {
@@ -14,7 +15,7 @@ namespace {
 
 // Layout of ShadeUniforms in shaders/post/shade.frag.
 struct ShadeBlock {
-  glm::vec4 key, fill, ambient, backdrop;
+  glm::vec4 key, fill, ambient, backdrop, fog, line, unsharp;
 };
 
 glm::vec4 towardsLight(const DirectionalLight& light) {
@@ -27,22 +28,39 @@ double linearFromSrgb(double c) {
   return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
 }
 
+glm::vec4 linearColor(Rgb color, double alpha) {
+  const auto channel = [&](int shift) { return linearFromSrgb(((color >> shift) & 0xFF) / 255.0); };
+  return glm::vec4(glm::dvec4(channel(16), channel(8), channel(0), alpha));
+}
+
+glm::vec4 fogOf(const FogSettings& fog) {
+  MENISCUS_CHECK(fog.start < fog.end);
+  return glm::vec4(glm::dvec4(fog.strength, fog.start, 1.0 / (fog.end - fog.start), 0.0));
+}
+
+glm::vec4 unsharpOf(const DepthUnsharpSettings& unsharp) {
+  constexpr double kUnlimited = 1e6;
+  return glm::vec4(
+      glm::dvec4(unsharp.strength, unsharp.mode == UnsharpMode::halo ? 0.0 : kUnlimited, 0.0, 0.0));
+}
+
 }  // namespace
 
 glm::vec4 backdrop(const Background& background) {
-  if (background.transparent) return glm::vec4(0.0f);
-  const auto channel = [&](int shift) {
-    return linearFromSrgb(((background.color >> shift) & 0xFF) / 255.0);
-  };
-  return glm::vec4(glm::dvec4(channel(16), channel(8), channel(0), 1.0));
+  return background.transparent ? glm::vec4(0.0f) : linearColor(background.color, 1.0);
 }
 
 void ShadeUniforms::set(const ShadeSettings& settings) {
   if (!buffer_.object) buffer_ = gl::Buffer::updatable(sizeof(ShadeBlock));
   const Lighting& l = settings.lighting;
-  const ShadeBlock block{towardsLight(l.key), towardsLight(l.fill),
-                         glm::vec4(glm::dvec4(l.ambient, l.specular, l.shininess, 0.0)),
-                         backdrop(settings.background)};
+  const ShadeBlock block{
+      towardsLight(l.key),
+      towardsLight(l.fill),
+      glm::vec4(glm::dvec4(l.ambient, l.specular, l.shininess, settings.occlusion.strength)),
+      backdrop(settings.background),
+      fogOf(settings.fog),
+      linearColor(settings.lines.color, settings.lines.strength),
+      unsharpOf(settings.depthUnsharp)};
   buffer_.update(&block);
 }
 
@@ -50,14 +68,35 @@ void addShade(FrameGraph& graph, const ShadeSettings& settings, const ShadeUnifo
               ShaderLibrary& shaders, const GBufferRefs& gbuffer, const LightRefs& light, TextureRef target) {
   std::vector<TextureRef> reads{gbuffer.albedo, gbuffer.normal};
   if (light.visibility.valid()) reads.push_back(light.visibility);
+  if (light.occlusion.valid()) reads.push_back(light.occlusion);
+  if (light.difference.valid()) reads.push_back(light.difference);
+  if (light.lines.valid()) reads.push_back(light.lines);
+  const bool fog = settings.fog.strength > 0;
+  if (fog) reads.push_back(gbuffer.depth);
   graph.addPass("shade", reads, {{target, 0}},
-                [settings, &uniforms, &shaders, gbuffer, light](const PassContext& context) {
+                [settings, fog, &uniforms, &shaders, gbuffer, light](const PassContext& context) {
                   ShaderFlags flags;
                   if (settings.final) flags.insert("FINAL");
                   if (settings.final && settings.encodeSrgb) flags.insert("ENCODE_SRGB");
                   if (light.visibility.valid()) {
                     flags.insert("SHADOW");
                     glBindTextureUnit(2, context.texture(light.visibility).object.name());
+                  }
+                  if (light.occlusion.valid()) {
+                    flags.insert("OCCLUSION");
+                    glBindTextureUnit(3, context.texture(light.occlusion).object.name());
+                  }
+                  if (light.difference.valid()) {
+                    flags.insert("UNSHARP");
+                    glBindTextureUnit(4, context.texture(light.difference).object.name());
+                  }
+                  if (fog) {
+                    flags.insert("FOG");
+                    glBindTextureUnit(5, context.texture(gbuffer.depth).object.name());
+                  }
+                  if (light.lines.valid()) {
+                    flags.insert("LINES");
+                    glBindTextureUnit(6, context.texture(light.lines).object.name());
                   }
                   glBindTextureUnit(0, context.texture(gbuffer.albedo).object.name());
                   glBindTextureUnit(1, context.texture(gbuffer.normal).object.name());

@@ -1,6 +1,7 @@
 #pragma once
 // Deferred shading: from the G-buffer to light.
 
+#include "core/render_settings.h"
 #include "core/scene.h"
 #include "render/frame_graph.h"
 #include "render/gbuffer.h"
@@ -12,6 +13,10 @@ namespace meniscus {
 struct ShadeSettings {
   Lighting lighting;
   Background background;
+  OcclusionSettings occlusion;
+  FogSettings fog;
+  DepthUnsharpSettings depthUnsharp;
+  SilhouetteSettings lines;
   bool final = false;       ///< writes the picture itself; otherwise adds a sample to a sum (resolve.h)
   bool encodeSrgb = false;  ///< of the picture
 };
@@ -27,9 +32,12 @@ class ShadeUniforms {
   gl::Buffer buffer_;
 };
 
-/// What other passes found out about the light, per pixel; those that are not valid take no part.
+/// What other passes found out, per pixel; those that are not valid take no part.
 struct LightRefs {
   TextureRef visibility;  ///< share of the key light that arrives (shadow.h)
+  TextureRef occlusion;   ///< what is hidden of the sky, and the sky (occlusion.h)
+  TextureRef difference;  ///< in depth from the surroundings (depth_unsharp.h)
+  TextureRef lines;       ///< share of the pixel that is line (silhouette.h)
 };
 
 /// Adds the pass; it draws into `target`, an imported texture.

@@ -6,7 +6,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
+#include <vector>
 
 #include "render/post/fullscreen.h"
 
@@ -14,7 +16,12 @@ namespace meniscus {
 
 namespace {
 
+constexpr double kPi = 3.141592653589793;
 constexpr double kGoldenAngle = 2.399963229728653;
+
+// Where the probes lie; measured: docs/measured/shadow_error.md.
+constexpr int kProbesPerInnerOne = 3;
+constexpr double kInnerRing = 0.45, kOuterRing = 0.92;
 
 // Layout of ShadowUniforms in shaders/post/shadow.frag.
 struct ShadowBlock {
@@ -28,12 +35,33 @@ double radicalInverse2(unsigned i) {
   return value;
 }
 
-// Spread over the unit disc so that any first few are, too: the probes are the first of them.
-glm::vec2 discOffset(int index, int count, double turn) {
-  const double radius =
-      std::sqrt(std::fmod(radicalInverse2(static_cast<unsigned>(index)) + 0.5 / count, 1.0));
-  const double angle = index * kGoldenAngle + turn;
-  return glm::vec2(glm::dvec2(std::cos(angle), std::sin(angle)) * radius);
+// Spread over the unit disc: equal areas between the radii, a golden angle between neighbours.
+std::vector<glm::dvec2> discPattern(int count, double turn) {
+  std::vector<glm::dvec2> points;
+  for (int i = 0; i < count; ++i) {
+    const double radius = std::sqrt(std::fmod(radicalInverse2(static_cast<unsigned>(i)) + 0.5 / count, 1.0));
+    const double angle = i * kGoldenAngle + turn;
+    points.push_back(glm::dvec2(std::cos(angle), std::sin(angle)) * radius);
+  }
+  return points;
+}
+
+// Brings the probes to the front: what they miss, the filter misses. Most of them lie near the rim, where the
+// edge of a shadow comes in, the others inside, where thin shadows pass between.
+void probesFirst(std::vector<glm::dvec2>& points, int probes, double turn) {
+  const int count = std::min(probes, static_cast<int>(points.size()));
+  const int inside = count / kProbesPerInnerOne;
+  for (int i = 0; i < count; ++i) {
+    const bool inner = i < inside;
+    const int place = inner ? i : i - inside, places = inner ? inside : count - inside;
+    const double radius = inner ? (inside > 1 ? kInnerRing : 0.0) : kOuterRing;
+    const double angle = turn + 2 * kPi * place / places;
+    const glm::dvec2 ideal = glm::dvec2(std::cos(angle), std::sin(angle)) * radius;
+    const auto nearer = [&](const glm::dvec2& a, const glm::dvec2& b) {
+      return glm::distance(a, ideal) < glm::distance(b, ideal);
+    };
+    std::iter_swap(points.begin() + i, std::min_element(points.begin() + i, points.end(), nearer));
+  }
 }
 
 }  // namespace
@@ -58,9 +86,9 @@ void ShadowUniforms::set(const ShadowSettings& settings, const View& camera, con
   block.filter = glm::vec4(glm::dvec4(radius, settings.samples, settings.probes, 0.0));
   const double turn =
       sampleCount > 1 ? sample * kGoldenAngle / std::sqrt(static_cast<double>(sampleCount)) : 0;
-  for (int i = 0; i < settings.samples; ++i) {
-    block.offsets[static_cast<std::size_t>(i)] = discOffset(i, settings.samples, turn);
-  }
+  std::vector<glm::dvec2> points = discPattern(settings.samples, turn);
+  probesFirst(points, settings.probes, turn);
+  std::copy(points.begin(), points.end(), block.offsets.begin());
   buffer_.update(&block);
 }
 

@@ -162,33 +162,29 @@ FN real rayDistance(ViewBlock view, vec3 centerView, Split range, vec3 hit) {
   return distance;
 }
 
-// Bounds of a projected disc or sphere along screen direction (cosA, sinA), relative to its projected centre,
-// as slopes (multiply by 1 / pixel size). (position, axis) in view space turned so that x is that direction;
-// axis is the disc's unit normal, or zero for a sphere.
-//
-// The two planes through the eye that touch the quadric, Sigg et al. 2006 eq. (4) and (5) with the unknown
-// measured from the projected centre instead of from 0, which removes the cancellation between the two roots.
+// Bounds of a projected quadric along one screen direction, relative to its projected centre, as slopes
+// (multiply by 1 / pixel size): the two planes through the eye that touch it, Sigg et al. 2006 eq. (4) and
+// (5) with the unknown measured from the projected centre instead of from 0, which removes the cancellation
+// between the two roots.
 struct Extent {
   real low;
   real high;
   bool bounded;  // false: it meets the eye plane
 };
 
-FN Extent projectedExtent(ViewBlock view, real slope, real depth, real radius, real axisX, real axisZ) {
+// A plane of normal n touches a quadric M (columns: its semi-axes) where its distance from the centre is
+// |transpose(M) n|. G = M transpose(M) / radius^2; with n = (1, 0, slope of the centre) and e = (0, 0, 1),
+// g0 = nGn, g1 = nGe, g2 = eGe. Orthographic: half the width is radius * sqrt(g0).
+FN Extent tangentExtent(ViewBlock view, real depth, real radius, real g0, real g1, real g2) {
   Extent e;
-  real r2 = radius * radius;
   if (!isPerspective(view)) {
-    real half_ = radius * sqrt(max(real(1) - axisX * axisX, real(0)));
+    real half_ = radius * sqrt(max(g0, real(0)));
     e.low = -half_;
     e.high = half_;
     e.bounded = true;
     return e;
   }
-  // z points towards the viewer, depth away from it: the plane x = b * depth has the normal (1, 0, b).
-  real g0n = axisX + slope * axisZ;
-  real g0 = real(1) + slope * slope - g0n * g0n;
-  real g1 = slope - g0n * axisZ;
-  real g2 = real(1) - axisZ * axisZ;
+  real r2 = radius * radius;
   real a = depth * depth - r2 * g2;
   e.bounded = depth > real(0) && a > real(1e-4) * depth * depth;
   if (!e.bounded) {
@@ -202,4 +198,24 @@ FN Extent projectedExtent(ViewBlock view, real slope, real depth, real radius, r
   e.low = middle - half_;
   e.high = middle + half_;
   return e;
+}
+
+// Of a disc or sphere along screen direction (cosA, sinA): (position, axis) in view space turned so that x is
+// that direction; axis is the disc's unit normal, or zero for a sphere.
+FN Extent projectedExtent(ViewBlock view, real slope, real depth, real radius, real axisX, real axisZ) {
+  real s = isPerspective(view) ? slope : real(0);
+  // z points towards the viewer, depth away from it: the plane x = b * depth has the normal (1, 0, b).
+  real g0n = axisX + s * axisZ;
+  real g0 = real(1) + s * s - g0n * g0n;
+  real g1 = s - g0n * axisZ;
+  real g2 = real(1) - axisZ * axisZ;
+  return tangentExtent(view, depth, radius, g0, g1, g2);
+}
+
+// The same of an ellipsoid with perpendicular semi-axes: their components along the screen direction and
+// along z, as shares of `radius`, the longest.
+FN Extent ellipsoidExtent(ViewBlock view, real slope, real depth, real radius, vec3 axesX, vec3 axesZ) {
+  real s = isPerspective(view) ? slope : real(0);
+  vec3 n = axesX + s * axesZ;
+  return tangentExtent(view, depth, radius, dot(n, n), dot(n, axesZ), dot(axesZ, axesZ));
 }

@@ -74,6 +74,19 @@ TEST_F(RenderOption, outputMayBeExr) {
   EXPECT_EQ(picture.at(32, 24)[3], 1);
 }
 
+TEST_F(RenderOption, channelsAreTheLayersOfAnExr) {
+  const Picture layers = render(kProtein, {"--channels", "color,albedo,normal,depth,distance,id"}, "out.exr");
+  EXPECT_EQ(layers.channels, 12);
+  EXPECT_EQ(layers.bits, 32);
+  EXPECT_EQ(render(kProtein, {"--channels", "depth"}, "z.exr").channels, 1);
+  EXPECT_EQ(render(kProtein, {"--channels", "color"}).channels, 3) << "a PNG holds the colour";
+  EXPECT_EQ(render(kProtein, {"--channels", "color"}, "c.exr").pixels, render(kProtein, {}, "d.exr").pixels);
+  expectError(run({"render", molecule(kProtein), "-o", "a.png", "--channels", "color,depth"}),
+              ExitCode::badUsage, {"--channels", ".exr"});
+  expectError(run({"render", molecule(kProtein), "-o", "a.exr", "--channels", "ids"}), ExitCode::badUsage,
+              {"--channels", "ids", "albedo"});
+}
+
 TEST_F(RenderOption, representationChangesWhatIsDrawn) {
   const nlohmann::json spacefill = stats(kProtein);
   EXPECT_GT(spacefill["pictures"][0]["spheres"], 600);
@@ -278,6 +291,7 @@ TEST_F(RenderOption, helpShowsEveryOption) {
                              "--background",
                              "--samples",
                              "--depth",
+                             "--channels",
                              "--dpi",
                              "--representation",
                              "--color",
@@ -287,6 +301,21 @@ TEST_F(RenderOption, helpShowsEveryOption) {
                              "10.1039/c3dt50599e",
                              "--ball-scale",
                              "--stick-radius",
+                             "--shadows",
+                             "--penumbra",
+                             "--shadow-samples",
+                             "--outlines",
+                             "--line-width",
+                             "--line-color",
+                             "--line-strength",
+                             "--line-gap",
+                             "--crease-angle",
+                             "--depth-unsharp",
+                             "--unsharp-strength",
+                             "--unsharp-radius",
+                             "--fog",
+                             "--fog-start",
+                             "--fog-end",
                              "--orient",
                              "--rotate",
                              "--zoom",

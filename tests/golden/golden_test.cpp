@@ -41,6 +41,12 @@ const Case kCases[] = {
      {ColorScheme::chain, 0, false},
      Projection::perspective,
      {0xFFFFFF, true}},
+    {"alpha1_ellipsoids",
+     "3al1.pdb.gz",
+     Representation::ellipsoids,
+     {ColorScheme::element, 0, true},
+     Projection::perspective,
+     {}},
 };
 
 // Draws a case with the current context.

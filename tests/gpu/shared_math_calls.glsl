@@ -151,6 +151,17 @@ FN void callViewPoint(INOUT(Cell) c) {
 FN void callRayDistance(INOUT(Cell) c) {
   c.out_[0] = rayDistance(inView(c), in3(c, 44), inSplit(c, 47), in3(c, 49));
 }
+FN void outExtent(INOUT(Cell) c, Extent e) {
+  c.out_[0] = e.bounded ? real(1) : real(0);
+  c.out_[1] = e.low;
+  c.out_[2] = e.high;
+}
+FN void callTangentExtent(INOUT(Cell) c) {
+  outExtent(c, tangentExtent(inView(c), c.in_[44], c.in_[45], c.in_[46], c.in_[47], c.in_[48]));
+}
+FN void callEllipsoidExtent(INOUT(Cell) c) {
+  outExtent(c, ellipsoidExtent(inView(c), c.in_[44], c.in_[45], c.in_[46], in3(c, 47), in3(c, 50)));
+}
 FN void callProjectedExtent(INOUT(Cell) c) {
   Extent e = projectedExtent(inView(c), c.in_[44], c.in_[45], c.in_[46], c.in_[47], c.in_[48]);
   c.out_[0] = e.bounded ? real(1) : real(0);
@@ -167,4 +178,7 @@ FN void callSphereChord(INOUT(Cell) c) {
 }
 FN void callCylinderChord(INOUT(Cell) c) {
   outChord(c, cylinderChord(in3(c, 0), in3(c, 3), in3(c, 6), c.in_[9], c.in_[10]));
+}
+FN void callEllipsoidChord(INOUT(Cell) c) {
+  outChord(c, ellipsoidChord(in3(c, 0), in3(c, 3), in3(c, 6), in3(c, 9), in3(c, 12), in3(c, 15)));
 }

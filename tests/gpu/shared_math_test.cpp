@@ -323,5 +323,41 @@ TEST_F(SharedMath, ExtentsOfProjectedDiscsAndSpheres) {
                     {.groups = {{1, 2}}, .flag = true});
 }
 
+TEST_F(SharedMath, ExtentsOfProjectedEllipsoids) {
+  // Balls, discs and needles: components along the screen direction and along z.
+  const auto axes = [](Random& random, glm::dvec3& x, glm::dvec3& z) {
+    const glm::dmat3 turn = glm::transpose(glm::mat3_cast(random.rotation()));
+    const glm::dvec3 shares(1, random.logUniform(1e-4, 1), random.logUniform(1e-4, 1));
+    x = turn[0] * shares;
+    z = turn[2] * shares;
+  };
+  const auto place = [](Random& random, Inputs& out) {
+    const double depth = random.signedLog(0.1, 1e4);
+    out.push_back(static_cast<float>(depth));
+    out.push_back(static_cast<float>(std::abs(depth) * random.logUniform(1e-6, 3)));
+  };
+  expectConditioned(MENISCUS_SHARED_CALL(callEllipsoidExtent), 51,
+                    withView([=](Random& random, const PlacedView&, Inputs& out) {
+                      glm::dvec3 x, z;
+                      axes(random, x, z);
+                      out.push_back(static_cast<float>(random.signedLog(1e-4, 3)));
+                      place(random, out);
+                      append(out, glm::vec3(x));
+                      append(out, glm::vec3(z));
+                    }),
+                    {.groups = {{1, 2}}, .flag = true});
+  expectConditioned(MENISCUS_SHARED_CALL(callTangentExtent), 52,
+                    withView([=](Random& random, const PlacedView&, Inputs& out) {
+                      glm::dvec3 x, z;
+                      axes(random, x, z);
+                      const glm::dvec3 n = x + random.signedLog(1e-4, 3) * z;
+                      place(random, out);
+                      out.push_back(static_cast<float>(glm::dot(n, n)));
+                      out.push_back(static_cast<float>(glm::dot(n, z)));
+                      out.push_back(static_cast<float>(glm::dot(z, z)));
+                    }),
+                    {.groups = {{1, 2}}, .flag = true});
+}
+
 }  // namespace
 }  // namespace meniscus

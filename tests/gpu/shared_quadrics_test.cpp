@@ -99,6 +99,24 @@ TEST_F(SharedQuadrics, ChordsOfCylinders) {
       {.groups = kChordGroups, .flag = true});
 }
 
+TEST_F(SharedQuadrics, ChordsOfEllipsoids) {
+  expectConditioned(MENISCUS_SHARED_CALL(callEllipsoidChord), 63,
+                    [](Random& random, std::size_t i) {
+                      Inputs out;
+                      const double longest = random.logUniform(1e-3, 1e3), thinnest = i % 3 == 0 ? 1e-4 : 0.1;
+                      const glm::dvec3 radii(longest, longest * random.logUniform(thinnest, 1),
+                                             longest * random.logUniform(thinnest, 1));
+                      // Half of the rays aim at the thickness, half at the length.
+                      appendRay(out, random, i % 2 == 0 ? longest : std::min(radii.y, radii.z),
+                                random.uniform(0, 1.2));
+                      const glm::dmat3 turn = glm::mat3_cast(random.rotation());
+                      for (int k = 0; k < 3; ++k) append(out, glm::vec3(turn[k]));
+                      append(out, glm::vec3(radii));
+                      return out;
+                    },
+                    {.groups = kChordGroups, .flag = true});
+}
+
 // Degenerate rays whose chords are exact numbers.
 TEST_F(SharedQuadrics, NamedEdgesOfChords) {
   const std::vector<Inputs> spheres{{0, 0, 0, 0, 0, -1, 3},                   // through the centre
@@ -115,6 +133,11 @@ TEST_F(SharedQuadrics, NamedEdgesOfChords) {
                                       {0, 0, 2.5f, 1, 0, 0, 0, 0, 1, 2, 1},   // above the cap
                                       {0, 1, 0, 1, 0, 0, 0, 0, 1, 2, 1},      // tangent to the side
                                       {0, 0, 0, 0, 0, -1, 0, 0, -1, 2, 1}};   // through the middle
+  const std::vector<Inputs> ellipsoids{
+      {0, 0, 0, 0, 0, -1, 1, 0, 0, 0, 1, 0, 0, 0, 1, 3, 2, 1},        // through the centre
+      {3, 0, 0, 0, 0, -1, 1, 0, 0, 0, 1, 0, 0, 0, 1, 3, 2, 1},        // tangent: hits
+      {0, 2.5f, 0, 0, 0, -1, 1, 0, 0, 0, 1, 0, 0, 0, 1, 3, 2, 1},     // beside
+      {0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 8192, 1, 0.5f}};  // a needle, end-on
   const auto expectSame = [](const SharedCall& call, const std::vector<Inputs>& cases) {
     const Results r = evaluate(
         call, 1, [&](Random&, std::size_t i) { return cases[i]; }, cases.size());
@@ -128,6 +151,7 @@ TEST_F(SharedQuadrics, NamedEdgesOfChords) {
   };
   expectSame(MENISCUS_SHARED_CALL(callSphereChord), spheres);
   expectSame(MENISCUS_SHARED_CALL(callCylinderChord), cylinders);
+  expectSame(MENISCUS_SHARED_CALL(callEllipsoidChord), ellipsoids);
 }
 
 // GLSL does not promise NaN, but the formulas are written so that a driver that has it misses. Directions and
@@ -153,6 +177,8 @@ TEST_F(SharedQuadrics, WhatIsNotANumberIsMissed) {
   expectMisses(MENISCUS_SHARED_CALL(callSphereChord), {0.1f, 0.2f, 0, 0, 0, -1, 2}, {0, 1, 2, 6});
   expectMisses(MENISCUS_SHARED_CALL(callCylinderChord), {0.1f, 0.2f, 0, 0.6f, 0, -0.8f, 0, 0.8f, 0.6f, 3, 2},
                {0, 1, 2, 10});
+  expectMisses(MENISCUS_SHARED_CALL(callEllipsoidChord),
+               {0.1f, 0.2f, 0, 0.6f, 0, -0.8f, 1, 0, 0, 0, 1, 0, 0, 0, 1, 3, 2, 1}, {0, 1, 2, 15, 16, 17});
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #pragma once
-// Rays against spheres and capped cylinders in long double, written straight from the definitions and sharing
-// nothing with shaders/shared/: the truth that quadric tests compare with.
+// Rays against spheres, capped cylinders and ellipsoids in long double, written straight from the definitions
+// and sharing nothing with shaders/shared/: the truth that quadric tests compare with.
 
 #include <array>
 #include <cmath>
@@ -34,6 +34,16 @@ inline Vec3 exactViewPoint(const View& view, const glm::dvec3& origin, const glm
   Vec3 out(0);
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) out[row] += Real(view.rotation[column][row]) * offset[column];
+  }
+  return out;
+}
+
+/// A direction in view space.
+inline Vec3 exactViewDirection(const View& view, const glm::vec3& direction) {
+  Vec3 out(0);
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column)
+      out[row] += Real(view.rotation[column][row]) * Real(direction[column]);
   }
   return out;
 }
@@ -80,6 +90,55 @@ inline std::optional<ExactChord> exactCylinder(const ExactRay& ray, const Vec3& 
   }
   if (chord.in > chord.out) return std::nullopt;
   return chord;
+}
+
+/// An ellipsoid by its unit axes and half lengths.
+struct ExactEllipsoid {
+  Vec3 center, axes[3], radii;
+
+  Vec3 local(const Vec3& v) const {
+    return {glm::dot(v, axes[0]), glm::dot(v, axes[1]), glm::dot(v, axes[2])};
+  }
+};
+
+/// In view space; the axes as stored are perpendicular to float32's precision only.
+inline ExactEllipsoid exactEllipsoid(const View& view, const glm::dvec3& origin,
+                                     const EllipsoidPrimitive& e) {
+  const Vec3 a = exactViewDirection(view, e.axisA), b = exactViewDirection(view, e.axisB);
+  const Vec3 u = glm::normalize(a), w = glm::normalize(glm::cross(a, b));
+  return {exactViewPoint(view, origin, e.center),
+          {u, glm::cross(w, u), w},
+          {glm::length(a), glm::length(b), Real(e.shortest)}};
+}
+
+inline std::optional<ExactChord> exactEllipsoidChord(const ExactRay& ray, const ExactEllipsoid& e) {
+  const Real middle = glm::dot(e.center - ray.origin, ray.direction);
+  const Vec3 from = e.local(ray.origin + middle * ray.direction - e.center) / e.radii;
+  const Vec3 along = e.local(ray.direction) / e.radii;
+  const Real q2 = glm::dot(along, along), q1 = glm::dot(from, along), q0 = glm::dot(from, from) - 1;
+  const Real square = q1 * q1 - q2 * q0;
+  if (!(square >= 0)) return std::nullopt;
+  return ExactChord{middle + (-q1 - std::sqrt(square)) / q2, middle + (-q1 + std::sqrt(square)) / q2};
+}
+
+/// Distance of a point from an ellipsoid's surface, inside or outside: the nearest surface point is
+/// radii^2 p / (radii^2 + t) for the one t > -shortest^2 that puts it on the surface.
+inline Real ellipsoidDistance(const Vec3& point, const ExactEllipsoid& e) {
+  const Vec3 p = e.local(point - e.center), squares = e.radii * e.radii;
+  const Real shortest = std::min({e.radii.x, e.radii.y, e.radii.z});
+  const auto foot = [&](Real t) { return squares * p / (squares + t); };
+  const auto excess = [&](Real t) {
+    const Vec3 q = foot(t) / e.radii;
+    return glm::dot(q, q) - 1;
+  };
+  Real low = -shortest * shortest, high = glm::dot(p, p) + glm::dot(squares, squares) + shortest;
+  while (excess(high) > 0) high *= 2;
+  for (int i = 0; i < 200; ++i) {
+    const Real t = (low + high) / 2;
+    if (!(t > low && t < high)) break;
+    (excess(t) > 0 ? low : high) = t;
+  }
+  return glm::length(foot(high) - p);
 }
 
 /// Signed distance of a point from a capped cylinder's surface, negative inside.

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "tests/support/exact_rays.h"
+#include "tests/support/random.h"
 
 namespace meniscus::test {
 
@@ -35,10 +36,28 @@ std::shared_ptr<Primitives> randomChain(int count, unsigned seed) {
   return out;
 }
 
+std::shared_ptr<Primitives> randomEllipsoids(int count, unsigned seed, double share) {
+  auto out = randomSpheres(count, seed);
+  Random random(seed);
+  for (const SpherePrimitive& s : out->spheres) {
+    const glm::dmat3 turn = glm::mat3_cast(random.rotation());
+    const auto radius = static_cast<double>(s.radius);
+    const double middle = radius * random.uniform(share, 1);
+    const double shortest = share == 1 ? radius : random.uniform(share * radius, middle);
+    out->ellipsoids.push_back({s.center, static_cast<float>(shortest), glm::vec3(turn[0] * radius),
+                               glm::vec3(turn[1] * middle), s.color, s.id});
+  }
+  out->spheres.clear();
+  return out;
+}
+
 View viewOf(const Primitives& primitives, ImageSize size, Projection projection, double fovY) {
   std::vector<FitSphere> fit;
   for (const SpherePrimitive& s : primitives.spheres) {
     fit.push_back({primitives.origin + glm::dvec3(s.center), static_cast<double>(s.radius)});
+  }
+  for (const EllipsoidPrimitive& e : primitives.ellipsoids) {
+    fit.push_back({primitives.origin + glm::dvec3(e.center), static_cast<double>(glm::length(e.axisA))});
   }
   Camera camera;
   camera.projection = projection;
@@ -109,6 +128,18 @@ ExactHit exactHit(const Primitives& primitives, const View& view, glm::dvec2 pix
       const Real t = chord->in < start ? chord->out : chord->in;
       margins.emplace_back(std::abs(glm::dot(ray.origin + t * ray.direction - middle, axis)), t);
     }
+  }
+  for (const EllipsoidPrimitive& e : primitives.ellipsoids) {
+    const ExactEllipsoid exact = exactEllipsoid(view, primitives.origin, e);
+    nearest.add(exactEllipsoidChord(ray, exact), e.id, e.id);
+    ExactEllipsoid larger = exact, smaller = exact;
+    larger.radii += Vec3(Real(margin));
+    smaller.radii -= Vec3(Real(margin));
+    const bool none = std::min({smaller.radii.x, smaller.radii.y, smaller.radii.z}) <= 0;
+    const bool grazed = exactEllipsoidChord(ray, larger).has_value() !=
+                        (!none && exactEllipsoidChord(ray, smaller).has_value());
+    const Real along = glm::dot(exact.center - ray.origin, ray.direction);
+    if (grazed) margins.emplace_back(Real(0), along - exact.radii.x);
   }
   ExactHit hit;
   hit.id = nearest.bestId;

@@ -18,6 +18,10 @@ std::shared_ptr<Primitives> randomSpheres(int count, unsigned seed);
 /// The same as balls of a quarter of the radius, joined in a chain by cylinders.
 std::shared_ptr<Primitives> randomChain(int count, unsigned seed);
 
+/// Ellipsoids instead of the spheres: semi-axes of `share` to 1 of the radius, turned at random. share 1:
+/// the same balls.
+std::shared_ptr<Primitives> randomEllipsoids(int count, unsigned seed, double share);
+
 /// Looks at all of it from a direction that is no axis.
 View viewOf(const Primitives& primitives, ImageSize size, Projection projection = Projection::perspective,
             double fovY = 0.5);
@@ -45,7 +49,7 @@ struct ExactHit {
   double runnerUp = 0;   ///< distance of the next thing met, if another id; infinity if none
   double clearance = 0;  ///< how far [Å] the ray is from grazing something that is not behind the hit
 };
-/// Cylinders count as grazed where one larger or smaller by `margin` [Å] decides otherwise.
+/// Cylinders and ellipsoids count as grazed where one larger or smaller by `margin` [Å] decides otherwise.
 ExactHit exactHit(const Primitives& primitives, const View& view, glm::dvec2 pixel, double margin = 1e-4);
 
 }  // namespace meniscus::test

@@ -5,8 +5,10 @@
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 
 #include "core/error.h"
 #include "tests/support/process.h"
@@ -148,6 +150,39 @@ TEST(ExrFile, holdsLinearHalfFloats) {
   EXPECT_EQ(image.spec.channelnames, (std::vector<std::string>{"R", "G", "B", "A"}));
   // A half has 11 significant bits.
   expectPixels(image, 4, 4.0f / 2048, [](int x, int y, int c) { return valueAt(x, y, c) * 4; });
+}
+
+// Ids that a float cannot hold are stored as whole numbers.
+TEST(ExrFile, keepsEveryIdExact) {
+  const TemporaryFolder folder;
+  ImageFileOptions options = optionsFor(PixelFormat::rgbaFloat, false);
+  options.layers = {.color = false, .depth = true, .id = true};
+  for (const bool wide : {false, true}) {
+    options.wideIds = wide;
+    const std::uint32_t first = wide ? (1u << 24) + 1 : 1;
+    std::vector<std::uint32_t> words;
+    for (int i = 0; i < kSize.width * kSize.height; ++i) {
+      const float z = i == 0 ? std::numeric_limits<float>::infinity() : static_cast<float>(i) / 3;
+      words.insert(words.end(), {std::bit_cast<std::uint32_t>(z), first + static_cast<std::uint32_t>(i)});
+    }
+    write(folder / "a.exr", options, words);
+    const auto input = OIIO::ImageInput::open((folder / "a.exr").string());
+    ASSERT_NE(input, nullptr);
+    const int z = input->spec().channelindex("Z"), id = input->spec().channelindex("id");
+    EXPECT_EQ(input->spec().channelformat(z), OIIO::TypeDesc::FLOAT);
+    EXPECT_EQ(input->spec().channelformat(id), wide ? OIIO::TypeDesc::UINT32 : OIIO::TypeDesc::FLOAT);
+    std::vector<std::byte> pixels(words.size() * 4);
+    ASSERT_TRUE(input->read_image(0, 0, 0, -1, OIIO::TypeDesc::UNKNOWN, pixels.data()));
+    for (std::size_t i = 0; i < words.size() / 2; ++i) {
+      std::uint32_t number = 0;
+      float value = 0;
+      std::memcpy(&value, pixels.data() + 4 * (2 * i + static_cast<std::size_t>(id)), 4);
+      std::memcpy(&number, pixels.data() + 4 * (2 * i + static_cast<std::size_t>(id)), 4);
+      EXPECT_EQ(wide ? number : static_cast<std::uint32_t>(value), words[2 * i + 1]);
+      std::memcpy(&number, pixels.data() + 4 * (2 * i + static_cast<std::size_t>(z)), 4);
+      EXPECT_EQ(number, words[2 * i]);
+    }
+  }
 }
 
 TEST(ExrFile, dropsAlphaAndRecordsText) {

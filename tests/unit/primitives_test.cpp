@@ -222,5 +222,18 @@ TEST(FitSpheres, OfSomeAtomsTakeTheseAtomsOfEveryPlacement) {
   EXPECT_EQ(fit[2].center, m->positions[1] + glm::dvec3(0, 0, 50));
 }
 
+TEST(BuildPrimitives, GroupsNumberResiduesOrChainsOfEveryPlacement) {
+  const auto m = stringOfAtoms(3);
+  SceneObject object = objectOf(m, Representation::spacefill);
+  object.placements.push_back(object.placements.front());
+  Scene scene;
+  scene.objects = {object};
+  using Groups = std::vector<std::uint32_t>;
+  EXPECT_TRUE(buildPrimitives(scene).groups.empty());
+  EXPECT_TRUE(buildPrimitives(scene, LineGroups::atoms).groups.empty()) << "ids are enough";
+  EXPECT_EQ(buildPrimitives(scene, LineGroups::residues).groups, (Groups{0, 1, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(buildPrimitives(scene, LineGroups::chains).groups, (Groups{0, 1, 1, 1, 2, 2, 2}));
+}
+
 }  // namespace
 }  // namespace meniscus

@@ -29,6 +29,7 @@ TEST(RenderOptions, haveTheDefaultsOfTheHelp) {
   EXPECT_EQ(options.size, (ImageSize{1024, 768}));
   EXPECT_EQ(options.samples, 16);
   EXPECT_EQ(options.representation, Representation::spacefill);
+  EXPECT_EQ(options.probability, 0.5);
   EXPECT_EQ(options.coloring.scheme, ColorScheme::element);
   EXPECT_EQ(options.radii, RadiusSet::bondi);
   EXPECT_EQ(options.fovYDeg, 30);
@@ -146,6 +147,8 @@ TEST(RenderOptions, sayWhatIsWrong) {
       {{"in.pdb", "-o", "out.png", "--frobnicate"},
        "there is no option '--frobnicate'; see meniscus render --help"},
       {{"in.pdb", "-o", "out.exr", "--depth", "16"}, "--depth: is for PNG"},
+      {{"in.pdb", "-o", "out.png", "--channels", "color,id"}, "--channels: is for OpenEXR"},
+      {{"in.pdb", "-o", "out.exr", "--channels", "color,ids"}, "--channels:"},
       {{"in.pdb", "-o", "out.png", "--shader-dir", "/nonexistent"},
        "--shader-dir: '/nonexistent' is not a folder"},
   };

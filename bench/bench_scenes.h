@@ -1,0 +1,44 @@
+#pragma once
+// What the benchmarks draw, and how they measure.
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/image.h"
+#include "core/primitives.h"
+#include "core/scene.h"
+#include "core/view.h"
+
+namespace meniscus::bench {
+
+/// A structure of molecules/ and how often it stands beside itself.
+struct SceneSource {
+  std::string file;
+  Representation representation = Representation::spacefill;
+  glm::ivec3 copies{1};
+  std::size_t atoms = 0;    ///< so many of them, in the file's order; 0 = all
+  bool splitBonds = false;  ///< two cylinders for each bond, as Sigg et al. count them
+};
+
+struct BenchScene {
+  std::shared_ptr<Primitives> primitives;
+  View view;
+};
+/// Seen as `meniscus render` would see it. Throws Error if the file cannot be read.
+BenchScene loadScene(const SceneSource& source, ImageSize size);
+
+/// Takes rows and forgets them.
+class NullSink : public RowSink {
+ public:
+  void writeRows(std::span<const std::byte>) override {}
+};
+
+double median(std::vector<double> values);
+
+/// Wall time of a call [ms].
+double timeMs(const std::function<void()>& call);
+
+}  // namespace meniscus::bench

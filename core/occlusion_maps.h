@@ -1,0 +1,46 @@
+#pragma once
+// Height maps of a scene from many directions, for ambient occlusion: what lies above a point along each of
+// them. Drawn by the processor, since they are coarse and many: without a GPU each costs a fortieth of
+// drawing the scene as shaded quadrics at 1024x768 (docs/methods.md).
+
+#include <cstdint>
+#include <vector>
+
+#include "core/primitives.h"
+#include "core/render_settings.h"
+#include "core/view.h"
+
+namespace meniscus {
+
+/// Heights above the far plane of `view`, as it sees the scene from its direction. A scene is cut into slabs
+/// across that direction; a texel holds the highest point, of that texel's centre, of the primitives whose
+/// own centre lies in the slab, whether or not something in a slab above hides it.
+struct OcclusionMap {
+  View view;                ///< orthographic; its z axis points from the scene to the sky
+  int slabs = 1;            ///< from the far plane up
+  std::uint32_t first = 0;  ///< index of its first texel: slab by slab, row by row from the bottom
+};
+
+struct OcclusionMaps {
+  std::vector<OcclusionMap> maps;
+  /// Lower 16 bits: the height in units of `step`, 0 = nothing there; upper 16 bits: that of the texel to the
+  /// right.
+  std::vector<std::uint32_t> texels;
+  double texelSize = 0;   ///< [Å]
+  double slabHeight = 0;  ///< [Å]
+  double step = 0;        ///< of a height [Å]
+  double reach = 0;       ///< the highest that any primitive's point lies above its centre [Å]
+  double radius = 0;      ///< [Å] within which occluders count; 0 = all
+};
+
+/// Directions, evenly spread over the sphere, of which any aligned block of a power of two is, too: the first
+/// two dimensions of Sobol's sequence (1967, doi 10.1016/0041-5553(67)90144-9), by equal areas.
+std::vector<glm::dvec3> occlusionDirections(int count);
+
+/// Maps from settings.directions directions of everything that can lie above what `camera` sees. Texels are
+/// as large as the settings say, or as a pixel of the picture, or as memory demands, whichever is most; the
+/// radius is at least that of four texels and of a slab.
+OcclusionMaps drawOcclusionMaps(const Primitives& primitives, const View& camera,
+                                const OcclusionSettings& settings);
+
+}  // namespace meniscus

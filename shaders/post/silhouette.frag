@@ -1,0 +1,94 @@
+#version 450 core
+// flags: CREASES IDS GROUPS
+// Which of a pixel's four borders carry a line. Sigg et al. 2006, §4 take the length of a Sobel gradient of
+// depth and normals; here both are compared across each border, so that an edge has no width of its own and
+// lies on one side.
+#include "include/view.glsl"
+#include "shared/octahedral.glsl"
+#include "include/outline.glsl"
+
+#ifdef IDS
+layout(binding = 2) uniform usampler2D tId;
+#endif
+#ifdef GROUPS
+layout(std430, binding = 0) readonly buffer Groups {
+  uint uGroups[];  // by id
+};
+#endif
+
+layout(location = 0) out float oBorders;  // two bits for each of right, left, up, down, / 65535
+
+const uint kNoLine = 0u, kHalfLine = 1u, kWholeLine = 2u;  // half: the other half lies across the border
+
+#ifdef IDS
+uint groupAt(ivec2 at) {
+  uint id = texelFetch(tId, at, 0).r;
+#ifdef GROUPS
+  if (id < uint(uGroups.length())) id = uGroups[id];
+#endif
+  return id;
+}
+#endif
+
+#ifdef CREASES
+float turnBetween(vec3 a, vec3 b) {
+  return acos(clamp(dot(a, b), -1.0, 1.0));
+}
+
+// How much the normal turns from s to its neighbour if the surface goes on there; otherwise 0.
+float turnTo(Surface s, ivec2 there) {
+  if (!isInside(there)) return 0.0;
+  float depth = texelFetch(tDepth, there, 0).r;
+  if (depth <= 0.0) return 0.0;
+  Surface other = surfaceAt(there, depth);
+  return isApart(s, other, 1.0) ? 0.0 : turnBetween(s.normal, other.normal);
+}
+
+// A ridge turns the normal by more than the curvature does on the side that faces the viewer more: small
+// spheres, which turn most at their limb, have none.
+bool isCrease(Surface here, ivec2 at, Surface other, ivec2 towards) {
+  if (dot(here.normal, other.normal) >= uCrease.y) return false;
+  if (dot(other.normal - here.normal, other.point - here.point) < 0.0) return true;  // a groove
+  float curvature =
+      here.normal.z > other.normal.z ? turnTo(here, at - towards) : turnTo(other, at + 2 * towards);
+  return turnBetween(here.normal, other.normal) - curvature > uCrease.x;
+}
+#endif
+
+uint lineTowards(Surface here, uint group, ivec2 at, ivec2 towards) {
+  ivec2 there = at + towards;
+  if (!isInside(there)) return kNoLine;
+  float depth = texelFetch(tDepth, there, 0).r;
+  bool steps = uStep.w > 0.5;
+#ifdef IDS
+  bool differ = group != groupAt(there);
+#else
+  bool differ = false;
+#endif
+  if (depth <= 0.0) return steps || differ ? kWholeLine : kNoLine;
+  Surface other = surfaceAt(there, depth);
+  if (isApart(here, other, 1.0)) {
+    bool inFront = here.point.z >= other.point.z;
+    return (steps || differ) && inFront ? kWholeLine : kNoLine;
+  }
+#ifdef CREASES
+  differ = differ || isCrease(here, at, other, towards);
+#endif
+  return differ ? kHalfLine : kNoLine;
+}
+
+void main() {
+  ivec2 at = ivec2(gl_FragCoord.xy);
+  float depth = texelFetch(tDepth, at, 0).r;
+  oBorders = 0.0;
+  if (depth <= 0.0) return;
+  Surface here = surfaceAt(at, depth);
+  uint group = 0u;
+#ifdef IDS
+  group = groupAt(at);
+#endif
+  uint borders = lineTowards(here, group, at, ivec2(1, 0)) | lineTowards(here, group, at, ivec2(-1, 0)) << 2 |
+                 lineTowards(here, group, at, ivec2(0, 1)) << 4 |
+                 lineTowards(here, group, at, ivec2(0, -1)) << 6;
+  oBorders = float(borders) / 65535.0;
+}

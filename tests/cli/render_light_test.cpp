@@ -1,0 +1,85 @@
+// Options of light and the effects that need it.
+
+#include <numeric>
+
+#include "tests/cli/cli_test.h"
+
+namespace meniscus::test {
+namespace {
+
+constexpr const char* kProtein = "1ubq.pdb";
+
+class RenderLight : public CliTest {
+ protected:
+  // Mean of all channels but alpha.
+  static double brightness(const Picture& picture) {
+    return std::accumulate(picture.pixels.begin(), picture.pixels.end(), 0.0) /
+           static_cast<double>(picture.pixels.size());
+  }
+  static std::vector<std::string> passes(const nlohmann::json& stats) {
+    std::vector<std::string> names;
+    for (const auto& pass : stats.at("passes")) names.push_back(pass.at("name"));
+    return names;
+  }
+};
+
+TEST_F(RenderLight, shadowsDarkenAndCostNothingWhenOff) {
+  const Picture off = render(kProtein);
+  const Picture hard = render(kProtein, {"--shadows", "hard"});
+  const Picture soft = render(kProtein, {"--shadows", "soft"});
+  EXPECT_EQ(render(kProtein, {"--shadows", "off"}).pixels, off.pixels);
+  EXPECT_LT(brightness(hard), brightness(off));
+  EXPECT_LT(brightness(soft), brightness(off));
+  EXPECT_NE(hard.pixels, soft.pixels);
+  EXPECT_EQ(render(kProtein, {"--shadows", "soft"}).pixels, soft.pixels)
+      << "the same command, the same picture";
+
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(passes(stats(kProtein)), (Names{"spheres", "shade"}));
+  EXPECT_EQ(passes(stats(kProtein, {"--shadows", "hard"})),
+            (Names{"shadow map: spheres", "spheres", "shadow", "shade"}));
+}
+
+TEST_F(RenderLight, penumbraAndShadowSamplesChangeSoftShadowsOnly) {
+  const auto pixels = [this](const char* mode, const char* option, const char* value) {
+    return render(kProtein, {"--shadows", mode, option, value}).pixels;
+  };
+  EXPECT_NE(pixels("soft", "--penumbra", "1"), pixels("soft", "--penumbra", "6"));
+  EXPECT_NE(pixels("soft", "--shadow-samples", "1"), pixels("soft", "--shadow-samples", "256"));
+  EXPECT_EQ(pixels("hard", "--penumbra", "1"), pixels("hard", "--penumbra", "6"));
+  for (const char* extreme : {"0", "1000"}) render(kProtein, {"--shadows", "soft", "--penumbra", extreme});
+}
+
+TEST_F(RenderLight, occlusionDarkensByRadiusAndStrength) {
+  const auto light = [this](const std::vector<std::string>& more) {
+    std::vector<std::string> options{"--occlusion", "on"};
+    options.insert(options.end(), more.begin(), more.end());
+    return brightness(render(kProtein, options));
+  };
+  EXPECT_EQ(render(kProtein, {"--occlusion", "off", "--occlusion-radius", "4"}).pixels,
+            render(kProtein).pixels);
+  EXPECT_LT(light({}), light({"--occlusion-strength", "0.5"}));
+  EXPECT_LT(light({"--occlusion-strength", "0.5"}), light({"--occlusion-strength", "0"}));
+  EXPECT_LT(light({"--occlusion-radius", "0"}), light({}));
+  EXPECT_LT(light({}), light({"--occlusion-radius", "4"}));
+  EXPECT_NEAR(light({"--occlusion-directions", "128"}), light({"--occlusion-directions", "32"}), 0.01);
+  EXPECT_EQ(passes(stats(kProtein, {"--occlusion", "on"})),
+            (std::vector<std::string>{"occlusion maps", "spheres", "occlusion", "shade"}));
+}
+
+TEST_F(RenderLight, wrongValuesNameWhatIsAllowed) {
+  const auto refused = [this](const char* option, const char* value, const char* allowed) {
+    expectError(run({"render", molecule(kProtein), "-o", "a.png", option, value}), ExitCode::badUsage,
+                {option, value, allowed});
+  };
+  refused("--shadows", "on", "soft");
+  refused("--penumbra", "-1", "0");
+  refused("--shadow-samples", "0", "256");
+  refused("--occlusion", "maybe", "off");
+  refused("--occlusion-radius", "-1", "0");
+  refused("--occlusion-strength", "2", "1");
+  refused("--occlusion-directions", "9", "128");
+}
+
+}  // namespace
+}  // namespace meniscus::test

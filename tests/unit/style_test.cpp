@@ -1,0 +1,59 @@
+// Styles are shorthands: every one parses, and what is said beside it wins.
+
+#include "app/style.h"
+
+#include <gtest/gtest.h>
+
+#include "app/render_options.h"
+#include "core/error.h"
+
+namespace meniscus {
+namespace {
+
+using Arguments = std::vector<std::string>;
+
+RenderOptions parse(const Arguments& more) {
+  Arguments arguments{"a.pdb", "-o", "b.png"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return parseRenderOptions(arguments).value();
+}
+
+TEST(Style, EveryStyleIsMadeOfValidOptions) {
+  for (const Style& style : styles()) {
+    EXPECT_NO_THROW(parse({"--style", std::string(style.name)})) << style.name;
+  }
+}
+
+TEST(Style, FlatIsTheDefault) {
+  EXPECT_EQ(withStyle({"a.pdb", "--style", "flat"}), (Arguments{"a.pdb", "--style", "flat"}));
+  EXPECT_EQ(parse({"--style", "flat"}).shadows, parse({}).shadows);
+}
+
+TEST(Style, TurnsEffectsOn) {
+  const RenderOptions soft = parse({"--style", "soft"});
+  EXPECT_EQ(soft.shadows.mode, ShadowMode::soft);
+  EXPECT_TRUE(soft.occlusion.on);
+  EXPECT_FALSE(soft.lines.any());
+  EXPECT_TRUE(parse({"--style=full"}).lines.silhouettes);
+  EXPECT_EQ(parse({"--style", "illustration"}).highlight, 0.0);
+  EXPECT_EQ(parse({"--style", "publication"}).samples, 64);
+}
+
+TEST(Style, OptionsBesideItWinWhereverTheyStand) {
+  EXPECT_EQ(parse({"--shadows", "hard", "--style", "soft"}).shadows.mode, ShadowMode::hard);
+  EXPECT_EQ(parse({"--style", "soft", "--shadows", "off"}).shadows.mode, ShadowMode::off);
+  EXPECT_FALSE(parse({"--style", "soft", "--style", "flat"}).occlusion.on) << "the last style counts";
+}
+
+TEST(Style, AnUnknownOneIsRefusedByName) {
+  try {
+    parse({"--style", "glossy"});
+    FAIL();
+  } catch (const UsageError& error) {
+    EXPECT_NE(std::string(error.what()).find("glossy"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("illustration"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace meniscus
