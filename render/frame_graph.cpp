@@ -22,6 +22,14 @@ gl::Texture* TexturePool::acquire(const std::string& name, const gl::TextureDesc
   return entries_.back().texture.get();
 }
 
+void ReturnToPool::operator()(gl::Texture* texture) const {
+  pool->release(texture);
+}
+
+TextureLease TexturePool::lease(const std::string& name, const gl::TextureDesc& desc) {
+  return TextureLease(acquire(name, desc), ReturnToPool{this});
+}
+
 void TexturePool::release(gl::Texture* texture) {
   for (Entry& entry : entries_) {
     if (entry.texture.get() == texture) entry.used = false;

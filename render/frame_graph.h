@@ -13,12 +13,23 @@
 
 namespace meniscus {
 
+class TexturePool;
+
+/// Gives a texture back to its pool.
+struct ReturnToPool {
+  TexturePool* pool = nullptr;
+  void operator()(gl::Texture* texture) const;
+};
+using TextureLease = std::unique_ptr<gl::Texture, ReturnToPool>;
+
 /// Textures and framebuffers that outlive a frame, so that the next one allocates nothing.
 class TexturePool {
  public:
   /// A texture of exactly this description that is not in use. The name is for the statistics.
   gl::Texture* acquire(const std::string& name, const gl::TextureDesc& desc);
   void release(gl::Texture* texture);
+  /// The same, given back when the lease ends, however that comes about. The pool must outlive it.
+  TextureLease lease(const std::string& name, const gl::TextureDesc& desc);
   /// Framebuffer with these colour attachments (index = location, nullptr = none) and depth (or nullptr).
   unsigned framebuffer(const std::vector<const gl::Texture*>& colors, const gl::Texture* depth);
   std::vector<ResourceStats> textures() const;

@@ -94,6 +94,7 @@ struct Frame {
   ShadeSettings shade;
   Layers layers;
   ShadowMap shadowMap;  // without depth if there are no shadows
+  TextureLease shadowMapTexture = {};
   bool occlusion = false;
   UnsharpKernel unsharp = {};
   int margin = 0;  // of a tile: how far its pixels' effects look [pixels]
@@ -113,7 +114,6 @@ struct Renderer::Impl {
   DepthUnsharpUniforms unsharpUniforms;
   gl::Buffer viewUniforms;
   std::shared_ptr<const Primitives> primitives = std::make_shared<Primitives>();
-  gl::Texture* shadowMapTexture = nullptr;  // in use while a picture is drawn
   RenderStats stats;
 
   explicit Impl(const RendererOptions& o) : options(o), shaders(o.shaderDir) {
@@ -124,6 +124,7 @@ struct Renderer::Impl {
 
   void prepare() {
     if (!options.shaderDir.empty()) shaders.reloadIfChanged();
+    stats.omissions.clear();  // of an earlier picture
     Stopwatch watch(stats.uploadMs);
     quadrics.upload(*primitives);
     if (!viewUniforms.object) viewUniforms = gl::Buffer::updatable(sizeof(f32::ViewBlock));
@@ -198,16 +199,15 @@ void Renderer::Impl::drawShadowMap(Frame& frame) {
       makeLightView(frame.view, frame.shade.lighting.key, bounds, pixelFootprint(frame.view, bounds), maxSize,
                     shadows.mode == ShadowMode::soft ? shadows.penumbra : 0);
   const Tile whole{0, 0, light.size.width, light.size.height};
-  gl::Texture* depth = shadowMapTexture =
-      pool.acquire("shadow map", {gl::TextureFormat::depth32f, whole.width, whole.height});
+  frame.shadowMapTexture = pool.lease("shadow map", {gl::TextureFormat::depth32f, whole.width, whole.height});
   setView(light, whole, {0, 0});
   FrameGraph graph(pool);
   GBufferRefs gbuffer;
-  gbuffer.depth = graph.import("shadow map", *depth, Clear::zero);
+  gbuffer.depth = graph.import("shadow map", *frame.shadowMapTexture, Clear::zero);
   addQuadrics(graph, quadrics, shaders, gbuffer, "shadow map: ");
   graph.want(gbuffer.depth);
   execute(graph);
-  frame.shadowMap = {light, depth};
+  frame.shadowMap = {light, frame.shadowMapTexture.get()};
 }
 
 // What the effects of a whole picture share.
@@ -276,7 +276,7 @@ void Renderer::Impl::drawTile(const Frame& frame, const Tile& part, const gl::Te
     if (!dataApart) readLayers(graph, frame.layers, gbuffer, tile, texels);
     return;
   }
-  gl::Texture* sum = pool.acquire("sum", {gl::TextureFormat::rgba32f, tile.width, tile.height});
+  const TextureLease sum = pool.lease("sum", {gl::TextureFormat::rgba32f, tile.width, tile.height});
   for (int i = 0; i < samples; ++i) {
     setView(frame.view, tile, sampleOffset(i, samples));
     setShadow(i);
@@ -291,7 +291,6 @@ void Renderer::Impl::drawTile(const Frame& frame, const Tile& part, const gl::Te
              graph.import("sum", *sum, Clear::none), target);
   graph.want(target);
   execute(graph);
-  pool.release(sum);
 }
 
 void Renderer::renderPicture(const View& view, const Lighting& lighting, const Background& background,
@@ -335,9 +334,10 @@ void Renderer::renderPicture(const View& view, const Lighting& lighting, const B
       const Tile tile{x, top - height, std::min(tileSize.width, view.size.width - x), height};
       const Tile drawnTile = withMargin(tile, frame.margin, view.size);
       const int cropX = tile.x - drawnTile.x, cropY = tile.y - drawnTile.y;
-      gl::Texture* picture =
-          color ? r.pool.acquire("picture", {textureFormat(layout.format), drawnTile.width, drawnTile.height})
-                : nullptr;
+      TextureLease picture(nullptr, ReturnToPool{});
+      if (color) {
+        picture = r.pool.lease("picture", {textureFormat(layout.format), drawnTile.width, drawnTile.height});
+      }
       {
         Stopwatch watch(r.stats.drawMs);
         const double share = static_cast<double>(tile.width) * tile.height / pixels;
@@ -361,7 +361,6 @@ void Renderer::renderPicture(const View& view, const Lighting& lighting, const B
         picture->read(tile.width, tile.height, view.size.width,
                       band.data() + pixelBytes * static_cast<std::size_t>(x), cropX, cropY);
       }
-      if (color) r.pool.release(picture);
       ++r.stats.tiles;
     }
     for (int y = height; y-- > 0;) {
@@ -369,7 +368,6 @@ void Renderer::renderPicture(const View& view, const Lighting& lighting, const B
     }
     if (progress) progress(drawn);
   }
-  if (frame.shadowMap.depth) r.pool.release(r.shadowMapTexture);
 }
 
 HitImage Renderer::renderHits(const View& view, HitChannels channels) {
