@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "core/light_view.h"
+#include "core/sampling.h"
 #include "core/shared_math.h"
 
 namespace meniscus {
@@ -19,12 +20,6 @@ constexpr double kMaxTexels = 32.0 * (1 << 20);
 constexpr int kMaxSlabs = 32;
 constexpr int kMaxMapSize = 4096;
 constexpr double kHeights = 65534;  // that 16 bits can hold, beside 0 and some room for rounding
-
-double radicalInverse2(std::uint32_t i) {
-  double value = 0;
-  for (double digit = 0.5; i != 0; i >>= 1, digit *= 0.5) value += digit * (i & 1u);
-  return value;
-}
 
 // Second dimension of Sobol's sequence: direction numbers v_k = v_(k-1) xor (v_(k-1) >> 1).
 double sobol2(std::uint32_t i) {

@@ -7,17 +7,17 @@ namespace meniscus {
 
 namespace {
 
-double radicalInverse2(std::uint32_t i) {
-  double value = 0, digit = 0.5;
-  for (; i != 0; i >>= 1, digit *= 0.5) value += digit * (i & 1u);
-  return value;
-}
-
 float toGrid(double offset) {
   return static_cast<float>(std::floor(offset * 256.0) / 256.0);
 }
 
 }  // namespace
+
+double radicalInverse2(std::uint32_t i) {
+  double value = 0, digit = 0.5;
+  for (; i != 0; i >>= 1, digit *= 0.5) value += digit * (i & 1u);
+  return value;
+}
 
 glm::vec2 sampleOffset(int index, int count) {
   if (count <= 1) return {0, 0};

@@ -10,6 +10,7 @@
 #include <glm/vec4.hpp>
 #include <vector>
 
+#include "core/sampling.h"
 #include "render/post/fullscreen.h"
 
 namespace meniscus {
@@ -28,12 +29,6 @@ struct ShadowBlock {
   glm::vec4 rowX, rowY, rowZ, map, filter;
   std::array<glm::vec2, kMaxShadowSamples> offsets;
 };
-
-double radicalInverse2(unsigned i) {
-  double value = 0;
-  for (double digit = 0.5; i != 0; i >>= 1, digit *= 0.5) value += digit * (i & 1u);
-  return value;
-}
 
 // Spread over the unit disc: equal areas between the radii, a golden angle between neighbours.
 std::vector<glm::dvec2> discPattern(int count, double turn) {
