@@ -2,6 +2,7 @@
 
 #include <glad/gl.h>
 
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
@@ -16,6 +17,7 @@ namespace {
 // Layout of ShadeUniforms in shaders/post/shade.frag.
 struct ShadeBlock {
   glm::vec4 key, fill, ambient, backdrop, fog, line, unsharp;
+  std::array<glm::vec4, 256> linear;
 };
 
 glm::vec4 towardsLight(const DirectionalLight& light) {
@@ -26,6 +28,14 @@ glm::vec4 towardsLight(const DirectionalLight& light) {
 
 double linearFromSrgb(double c) {
   return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+}
+
+std::array<glm::vec4, 256> linearTable() {
+  std::array<glm::vec4, 256> table{};
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    table[i].x = static_cast<float>(linearFromSrgb(static_cast<double>(i) / 255.0));
+  }
+  return table;
 }
 
 glm::vec4 linearColor(Rgb color, double alpha) {
@@ -60,7 +70,8 @@ void ShadeUniforms::set(const ShadeSettings& settings) {
       backdrop(settings.background),
       fogOf(settings.fog),
       linearColor(settings.lines.color, settings.lines.strength),
-      unsharpOf(settings.depthUnsharp)};
+      unsharpOf(settings.depthUnsharp),
+      linearTable()};
   buffer_.update(&block);
 }
 

@@ -36,7 +36,14 @@ layout(std140, binding = 1) uniform ShadeUniforms {
   vec4 uFog;       // strength; start and 1 / (end - start) in shares of the scene's depth range; 0
   vec4 uLine;      // linear, opacity
   vec4 uUnsharp;   // strength, largest brightening, 0, 0
+  // x: linear light of each 8-bit sRGB value. Three pow() per pixel cost llvmpipe more, above all to compile.
+  vec4 uLinear[256];
 };
+
+vec3 linearAlbedo(vec3 stored) {
+  uvec3 value = uvec3(stored * 255.0 + 0.5);
+  return vec3(uLinear[value.r].x, uLinear[value.g].x, uLinear[value.b].x);
+}
 
 layout(location = 0) out vec4 oColor;
 
@@ -60,7 +67,7 @@ void main() {
 #endif
     float highlight = key > 0.0 ? uAmbient.y * pow(max(dot(normal, halfway), 1e-6), uAmbient.z) : 0.0;
     highlight *= uKey.w * min(key / (0.1 * uKey.w), 1.0);  // fades out with the light it mirrors
-    light = vec4(linearFromSrgb(albedo.rgb) * (key + around) + highlight, 1.0);
+    light = vec4(linearAlbedo(albedo.rgb) * (key + around) + highlight, 1.0);
 #ifdef UNSHARP
     // Shifted on the scale of perceived brightness, of which the square root is near enough.
     float shift = min(uUnsharp.x * texelFetch(tDifference, at, 0).r, uUnsharp.y);
