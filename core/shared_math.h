@@ -33,6 +33,7 @@ inline float min(float a, float b) {
 #include "shaders/shared/projection.glsl"
 #include "shaders/shared/octahedral.glsl"
 #include "shaders/shared/quadrics.glsl"
+#include "shaders/shared/metaball.glsl"
 // clang-format on
 #undef SPLITTER
 #undef PARALLEL_LIMIT
@@ -62,6 +63,7 @@ inline double min(double a, double b) {
 #include "shaders/shared/projection.glsl"
 #include "shaders/shared/octahedral.glsl"
 #include "shaders/shared/quadrics.glsl"
+#include "shaders/shared/metaball.glsl"
 // clang-format on
 #undef SPLITTER
 #undef PARALLEL_LIMIT

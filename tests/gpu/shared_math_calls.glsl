@@ -182,3 +182,46 @@ FN void callCylinderChord(INOUT(Cell) c) {
 FN void callEllipsoidChord(INOUT(Cell) c) {
   outChord(c, ellipsoidChord(in3(c, 0), in3(c, 3), in3(c, 6), in3(c, 9), in3(c, 12), in3(c, 15)));
 }
+
+// metaball.glsl
+FN void callSexticKernel(INOUT(Cell) c) {
+  c.out_[0] = sexticKernel(c.in_[0]);
+}
+FN void callSexticSlope(INOUT(Cell) c) {
+  c.out_[0] = sexticSlope(c.in_[0]);
+}
+FN void callQuarticKernel(INOUT(Cell) c) {
+  c.out_[0] = quarticKernel(c.in_[0]);
+}
+FN void callQuarticSlope(INOUT(Cell) c) {
+  c.out_[0] = quarticSlope(c.in_[0]);
+}
+FN void callPowerKernel(INOUT(Cell) c) {
+  c.out_[0] = powerKernel(c.in_[0], int(c.in_[1]));
+}
+FN void callPowerSlope(INOUT(Cell) c) {
+  c.out_[0] = powerSlope(c.in_[0], int(c.in_[1]));
+}
+FN Window inWindow(Cell c) {
+  return windowOn(c.in_[0], c.in_[1], c.in_[2], c.in_[3], c.in_[4]);
+}
+FN void callWindowOn(INOUT(Cell) c) {
+  Window w = inWindow(c);
+  c.out_[0] = w.w0;
+  c.out_[1] = w.w1;
+  c.out_[2] = w.w2;
+}
+FN void callQuarticPiece(INOUT(Cell) c) {
+  QuarticPiece p = quarticPiece(inWindow(c));
+  for (int i = 0; i < 5; ++i) c.out_[i] = p.c[i];
+}
+FN void callSexticPiece(INOUT(Cell) c) {
+  SexticPiece p = sexticPiece(inWindow(c));
+  for (int i = 0; i < 7; ++i) c.out_[i] = p.c[i];
+}
+// in_[5]: alpha; in_[6]: the first coefficient that is shown
+FN void callPowerPiece(INOUT(Cell) c) {
+  PowerPiece p = powerPiece(inWindow(c), int(c.in_[5]));
+  int first = int(c.in_[6]);
+  for (int i = 0; i < 16; ++i) c.out_[i] = first + i <= 2 * kMostExponent ? p.c[first + i] : real(0);
+}

@@ -44,7 +44,8 @@ gl::Object computeProgram(const std::string& text) {
 void runOnGpu(const char* name, std::vector<f32::Cell>& cells) {
   const ShaderLibrary library{{}};
   std::string text = "#version 450 core\n";
-  for (const char* part : {"include/view.glsl", "shared/octahedral.glsl", "shared/quadrics.glsl"}) {
+  for (const char* part :
+       {"include/view.glsl", "shared/octahedral.glsl", "shared/quadrics.glsl", "shared/metaball.glsl"}) {
     text += library.source(part).text;
   }
   text += sharedCallsText() +
