@@ -13,6 +13,7 @@ namespace meniscus {
 struct Placement {
   glm::dmat4 transform{1.0};         ///< rigid motion, Å
   std::vector<IndexRange> residues;  ///< what is copied: ranges into Molecule::residues
+  bool operator==(const Placement&) const = default;
 };
 
 /// The molecule as it stands: one placement of all residues.

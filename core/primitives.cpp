@@ -48,8 +48,20 @@ float drawnRadius(const SceneObject& object, const Ellipsoids& ellipsoids, std::
       return static_cast<float>(object.licoriceRadius);
     case Representation::ellipsoids:
       return ellipsoids.longest(atom);
+    case Representation::surface:
+      break;
   }
   return vdw;
+}
+
+// Where the fields of several atoms meet, the surface lies outside their spheres, by this share of the radius
+// at most in proteins at the default blend (measured), and never outside the support.
+constexpr double kSurfaceBulge = 0.25;
+
+double fitRadius(const SceneObject& object, const Ellipsoids& ellipsoids, std::size_t atom) {
+  const double radius = static_cast<double>(drawnRadius(object, ellipsoids, atom));
+  if (object.representation != Representation::surface) return radius;
+  return radius * std::min(1 + kSurfaceBulge, object.surface.blend);
 }
 
 float bondRadius(const SceneObject& object) {
@@ -67,13 +79,23 @@ glm::dvec3 placed(const Placement& placement, const glm::dvec3& position) {
   return glm::dvec3(placement.transform * glm::dvec4(position, 1.0));
 }
 
-// Calls f(atom) for each atom that a placement holds.
+// Calls f(atom) for each atom of an object that a placement holds.
 template <typename F>
-void forEachAtom(const Molecule& molecule, const Placement& placement, F f) {
+void forEachAtom(const SceneObject& object, const Placement& placement, F f) {
+  const bool all = object.atoms.empty();
   for (const IndexRange& range : placement.residues) {
     for (std::uint32_t r = range.first; r < range.end(); ++r) {
-      const IndexRange& atoms = molecule.residues[r].atoms;
-      for (std::uint32_t a = atoms.first; a < atoms.end(); ++a) f(a);
+      const IndexRange& atoms = object.molecule->residues[r].atoms;
+      auto chosen =
+          all ? object.atoms.end() : std::lower_bound(object.atoms.begin(), object.atoms.end(), atoms.first);
+      for (std::uint32_t a = atoms.first; a < atoms.end(); ++a) {
+        if (all) {
+          f(a);
+        } else if (chosen != object.atoms.end() && *chosen == a) {
+          f(a);
+          ++chosen;
+        }
+      }
     }
   }
 }
@@ -83,7 +105,7 @@ glm::dvec3 middleOf(const Scene& scene) {
   glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
   for (const SceneObject& object : scene.objects) {
     for (const Placement& placement : object.placements) {
-      forEachAtom(*object.molecule, placement, [&](std::uint32_t atom) {
+      forEachAtom(object, placement, [&](std::uint32_t atom) {
         const glm::dvec3 p = placed(placement, object.molecule->positions[atom]);
         low = glm::min(low, p);
         high = glm::max(high, p);
@@ -103,9 +125,14 @@ void addPlacement(const SceneObject& object, const Placement& placement, const s
   std::vector<glm::vec3> centers(bonds ? molecule.atomCount() : 0);
   if (bonds) ids.assign(molecule.atomCount(), kNotDrawn);
 
-  forEachAtom(molecule, placement, [&](std::uint32_t atom) {
+  forEachAtom(object, placement, [&](std::uint32_t atom) {
     const glm::vec3 center(placed(placement, molecule.positions[atom]) - out.origin);
     const std::uint32_t id = firstId + atom;
+    if (object.representation == Representation::surface) {
+      const float support = drawnRadius(object, ellipsoids, atom) * static_cast<float>(object.surface.blend);
+      out.surfaces.back().balls.push_back({center, support, 1.0f, colors[atom], id});
+      return;
+    }
     if (object.representation == Representation::ellipsoids && !ellipsoids.isSphere(atom)) {
       const glm::dmat3 axes = turn * ellipsoids.axes(atom);
       out.ellipsoids.push_back({center, static_cast<float>(glm::length(axes[2])), glm::vec3(axes[0]),
@@ -127,6 +154,19 @@ void addPlacement(const SceneObject& object, const Placement& placement, const s
   }
 }
 
+// Whether an object's atoms are those of the object before it, only drawn in another way.
+bool sharesIds(const Scene& scene, std::size_t object) {
+  return object > 0 && scene.objects[object].molecule == scene.objects[object - 1].molecule &&
+         scene.objects[object].placements == scene.objects[object - 1].placements;
+}
+
+MetaballField emptyField(const SurfaceShape& shape) {
+  MetaballField field;
+  field.kernel = shape.kernel;
+  field.level = shape.level.value_or(levelOfBlend(shape.kernel, shape.blend));
+  return field;
+}
+
 // Adds the groups of all ids of one placement.
 void addGroups(const Molecule& molecule, LineGroups groups, std::uint32_t& nextGroup,
                std::vector<std::uint32_t>& out) {
@@ -139,22 +179,31 @@ void addGroups(const Molecule& molecule, LineGroups groups, std::uint32_t& nextG
 
 }  // namespace
 
+std::size_t countIds(const Scene& scene) {
+  std::size_t ids = 0;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const SceneObject& object = scene.objects[i];
+    if (!sharesIds(scene, i)) ids += object.molecule->atomCount() * object.placements.size();
+  }
+  return ids;
+}
+
 bool needsBonds(Representation representation) {
-  return representation != Representation::spacefill;
+  return representation != Representation::spacefill && representation != Representation::surface;
 }
 
 Primitives buildPrimitives(const Scene& scene, LineGroups groups) {
   Primitives out;
   out.origin = middleOf(scene);
-  std::size_t spheres = 0, ids = 0;
+  std::size_t spheres = 0;
   for (const SceneObject& object : scene.objects) {
     for (const Placement& placement : object.placements) {
-      if (object.representation != Representation::ellipsoids)
-        forEachAtom(*object.molecule, placement, [&](std::uint32_t) { ++spheres; });
-      ids += object.molecule->atomCount();
+      if (object.representation != Representation::ellipsoids &&
+          object.representation != Representation::surface)
+        forEachAtom(object, placement, [&](std::uint32_t) { ++spheres; });
     }
   }
-  if (ids > std::numeric_limits<std::uint32_t>::max()) {
+  if (countIds(scene) > std::numeric_limits<std::uint32_t>::max()) {
     throw InputError(
         "the scene has more than 4,294,967,294 atoms; draw a part of it (--select, fewer copies)");
   }
@@ -162,16 +211,24 @@ Primitives buildPrimitives(const Scene& scene, LineGroups groups) {
 
   const bool grouped = groups == LineGroups::residues || groups == LineGroups::chains;
   if (grouped) out.groups.assign(1, 0);
-  std::uint32_t nextId = 1, nextGroup = 1;
+  std::uint32_t firstId = 1, nextId = 1, nextGroup = 1;
   std::vector<std::uint32_t> scratch;
-  for (const SceneObject& object : scene.objects) {
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const SceneObject& object = scene.objects[i];
     const std::vector<Rgb> colors = colorAtoms(*object.molecule, object.coloring);
     const Ellipsoids ellipsoids(object);
+    const auto atoms = static_cast<std::uint32_t>(object.molecule->atomCount());
+    const bool shared = sharesIds(scene, i);
+    if (!shared) firstId = nextId;
+    if (object.representation == Representation::surface) out.surfaces.push_back(emptyField(object.surface));
+    std::uint32_t id = firstId;
     for (const Placement& placement : object.placements) {
-      addPlacement(object, placement, colors, ellipsoids, scratch, nextId, out);
-      if (grouped) addGroups(*object.molecule, groups, nextGroup, out.groups);
-      nextId += static_cast<std::uint32_t>(object.molecule->atomCount());
+      addPlacement(object, placement, colors, ellipsoids, scratch, id, out);
+      if (grouped && !shared) addGroups(*object.molecule, groups, nextGroup, out.groups);
+      id += atoms;
     }
+    nextId = id;
+    if (!out.surfaces.empty() && out.surfaces.back().balls.empty()) out.surfaces.pop_back();
   }
   return out;
 }
@@ -189,6 +246,8 @@ BoundingSphere Primitives::bounds() const {
     grow(c.b, c.radius);
   }
   for (const EllipsoidPrimitive& e : ellipsoids) grow(e.center, glm::length(e.axisA));
+  for (const MetaballField& field : surfaces)
+    for (const Metaball& b : field.balls) grow(b.center, b.support);
   const glm::vec3 middle = (low + high) * 0.5f;
   double radius = 0;
   for (const SpherePrimitive& s : spheres) {
@@ -200,6 +259,10 @@ BoundingSphere Primitives::bounds() const {
   }
   for (const EllipsoidPrimitive& e : ellipsoids) {
     radius = std::max(radius, static_cast<double>(glm::length(e.center - middle) + glm::length(e.axisA)));
+  }
+  for (const MetaballField& field : surfaces) {
+    for (const Metaball& b : field.balls)
+      radius = std::max(radius, static_cast<double>(glm::length(b.center - middle) + b.support));
   }
   return {origin + glm::dvec3(middle), radius};
 }
@@ -213,10 +276,10 @@ std::vector<FitSphere> fitSpheres(const SceneObject& object, const std::vector<s
     for (const std::uint32_t atom : atoms) chosen[atom] = true;
   }
   for (const Placement& placement : object.placements) {
-    forEachAtom(*object.molecule, placement, [&](std::uint32_t atom) {
+    forEachAtom(object, placement, [&](std::uint32_t atom) {
       if (!chosen.empty() && !chosen[atom]) return;
-      out.push_back({placed(placement, object.molecule->positions[atom]),
-                     static_cast<double>(drawnRadius(object, ellipsoids, atom))});
+      out.push_back(
+          {placed(placement, object.molecule->positions[atom]), fitRadius(object, ellipsoids, atom)});
     });
   }
   return out;

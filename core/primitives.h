@@ -1,12 +1,13 @@
 #pragma once
-// What a Scene becomes: plain arrays of quadrics, in the layout in which they are uploaded. They do not know
-// why they exist.
+// What a Scene becomes: plain arrays of quadrics and metaballs, in the layout in which they are uploaded.
+// They do not know why they exist.
 
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <vector>
 
 #include "core/camera_fit.h"
+#include "core/metaball_field.h"
 #include "core/render_settings.h"
 #include "core/scene.h"
 #include "core/view.h"
@@ -44,16 +45,23 @@ struct Primitives {
   std::vector<SpherePrimitive> spheres;
   std::vector<CylinderPrimitive> cylinders;
   std::vector<EllipsoidPrimitive> ellipsoids;
-  std::vector<std::uint32_t> groups;  ///< by id; [0] = 0 and nobody else's; empty = not asked for
+  std::vector<MetaballField> surfaces;  ///< one per object drawn so, none of them empty
+  std::vector<std::uint32_t> groups;    ///< by id; [0] = 0 and nobody else's; empty = not asked for
 
-  bool empty() const { return spheres.empty() && cylinders.empty() && ellipsoids.empty(); }
+  bool empty() const {
+    return spheres.empty() && cylinders.empty() && ellipsoids.empty() && surfaces.empty();
+  }
   BoundingSphere bounds() const;  ///< world space
 };
 
 /// All objects of a scene; residues or chains get Primitives::groups, which are different in every placement.
-/// Ids number the atoms of the first placement of the first object 1, 2, ..., and go on. Throws InputError if
-/// more than 2^32 - 1 ids would be needed.
+/// Ids number the atoms of the first placement of the first object 1, 2, ..., and go on; an object of the
+/// same molecule and placements as the one before shares its ids. Throws InputError if more than 2^32 - 1 ids
+/// would be needed.
 Primitives buildPrimitives(const Scene& scene, LineGroups groups = LineGroups::none);
+
+/// How many ids buildPrimitives() gives.
+std::size_t countIds(const Scene& scene);
 
 /// Whether an object's representation draws bonds; if none does, nobody needs to find them.
 bool needsBonds(Representation representation);

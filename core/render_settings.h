@@ -3,6 +3,8 @@
 // nothing.
 
 #include <cstdint>
+#include <map>
+#include <string>
 
 namespace meniscus {
 
@@ -70,6 +72,13 @@ struct OcclusionSettings {
   bool operator==(const OcclusionSettings&) const = default;
 };
 
+/// How metaball surfaces are drawn; which methods and parameters there are: render/surface_method.h.
+struct SurfaceSettings {
+  std::string method = "auto";
+  std::map<std::string, double> parameters;  ///< those that are not the method's defaults
+  bool operator==(const SurfaceSettings&) const = default;
+};
+
 struct RenderSettings {
   int samples =
       16;  ///< rays per pixel, 1..kMaxSamples; fixed positions, so the same command gives the same bytes
@@ -78,6 +87,7 @@ struct RenderSettings {
   SilhouetteSettings lines;
   DepthUnsharpSettings depthUnsharp;
   FogSettings fog;
+  SurfaceSettings surface;
   bool operator==(const RenderSettings&) const = default;
 };
 

@@ -5,10 +5,12 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/assembly.h"
 #include "core/elements.h"
+#include "core/metaball_field.h"
 #include "core/molecule.h"
 #include "core/view.h"
 
@@ -20,7 +22,8 @@ enum class Representation : std::uint8_t {
   spacefill,     ///< van der Waals spheres
   ballAndStick,  ///< small spheres and thin cylinders
   licorice,      ///< cylinders with rounded ends
-  ellipsoids     ///< displacement ellipsoids and thin cylinders (ORTEP)
+  ellipsoids,    ///< displacement ellipsoids and thin cylinders (ORTEP)
+  surface        ///< molecular surface: the metaball field of all atoms
 };
 
 enum class ColorScheme : std::uint8_t { element, chain, residue, bFactor, plddt, rainbow, uniform };
@@ -31,9 +34,17 @@ struct Coloring {
   bool carbonsByChain = false;  ///< with element: carbons take their chain's colour
 };
 
-/// One molecule, in one representation, at one or more places.
+/// A molecular surface: a metaball per atom, of coefficient 1.
+struct SurfaceShape {
+  Kernel kernel;
+  double blend = 2;  ///< support as a multiple of the van der Waals radius, > 1; larger is smoother
+  std::optional<double> level;  ///< nothing = a lone atom shows its van der Waals radius
+};
+
+/// One molecule, or some of its atoms, in one representation, at one or more places.
 struct SceneObject {
   std::shared_ptr<const Molecule> molecule;
+  std::vector<std::uint32_t> atoms;   ///< that are drawn, ascending indices; empty = all
   std::vector<Placement> placements;  ///< see placeOnce, placeAssembly, replicate
   Representation representation = Representation::spacefill;
   Coloring coloring;
@@ -43,6 +54,7 @@ struct SceneObject {
   double licoriceRadius = 0.25;  ///< cylinder and sphere radius [Å], licorice
   double ellipsoidStickRadius = 0.06;  ///< cylinder radius [Å], ellipsoids
   double probability = 0.5;            ///< that an atom is inside its ellipsoid, 0 < p < 1
+  SurfaceShape surface;
 };
 
 /// Light from infinity, fixed to the viewer.

@@ -81,6 +81,15 @@ bool PassContext::isLive(TextureRef ref) const {
   return ref.valid() && graph_.resources_[static_cast<std::size_t>(ref.index)].live;
 }
 
+TexturePool& PassContext::pool() const {
+  return graph_.pool_;
+}
+
+void PassContext::bindTarget() const {
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+  glViewport(0, 0, width_, height_);
+}
+
 FrameGraph::~FrameGraph() {
   for (Resource& resource : resources_) {
     if (resource.pooled) pool_.release(resource.pooled);
@@ -184,15 +193,15 @@ void FrameGraph::run(Pass& pass) {
     }
   }
   const unsigned framebuffer = pool_.framebuffer(colors, depth);
-  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
-  glViewport(0, 0, size.width, size.height);
+  const PassContext context(*this, framebuffer, size.width, size.height);
+  context.bindTarget();
   for (const Attachment& a : pass.writes) {
     Resource& resource = resources_[static_cast<std::size_t>(a.texture.index)];
     if (!resource.live) continue;
     clearAttachment(framebuffer, resource, a.location);
     resource.written = true;
   }
-  pass.execute(PassContext(*this));
+  pass.execute(context);
 }
 
 void FrameGraph::execute(RenderStats& stats, bool timed) {

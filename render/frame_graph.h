@@ -63,11 +63,18 @@ class PassContext {
   const gl::Texture& texture(TextureRef ref) const;
   /// Whether anybody wants this texture; if not it does not exist.
   bool isLive(TextureRef ref) const;
+  /// For textures and framebuffers that a pass needs within itself.
+  TexturePool& pool() const;
+  /// Binds the pass's framebuffer and viewport again, after others were bound.
+  void bindTarget() const;
 
  private:
   friend class FrameGraph;
-  explicit PassContext(const FrameGraph& graph) : graph_(graph) {}
+  PassContext(const FrameGraph& graph, unsigned framebuffer, int width, int height)
+      : graph_(graph), framebuffer_(framebuffer), width_(width), height_(height) {}
   const FrameGraph& graph_;
+  unsigned framebuffer_;
+  int width_, height_;
 };
 
 class FrameGraph {

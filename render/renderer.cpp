@@ -18,6 +18,7 @@
 #include "render/post/shadow.h"
 #include "render/post/silhouette.h"
 #include "render/quadrics.h"
+#include "render/surface_passes.h"
 #include "render/view_block.h"
 
 namespace meniscus {
@@ -107,6 +108,7 @@ struct Renderer::Impl {
   ShaderLibrary shaders;
   TexturePool pool;
   QuadricBuffers quadrics;
+  SurfacePasses surfaces;
   ShadeUniforms shadeUniforms;
   ShadowUniforms shadowUniforms;
   OcclusionBuffers occlusionBuffers;
@@ -122,11 +124,12 @@ struct Renderer::Impl {
     glDisable(GL_MULTISAMPLE);
   }
 
-  void prepare() {
+  void prepare(const SurfaceSettings& surface) {
     if (!options.shaderDir.empty()) shaders.reloadIfChanged();
     stats.omissions.clear();  // of an earlier picture
     Stopwatch watch(stats.uploadMs);
     quadrics.upload(*primitives);
+    surfaces.prepare(primitives, surface);
     if (!viewUniforms.object) viewUniforms = gl::Buffer::updatable(sizeof(f32::ViewBlock));
   }
 
@@ -136,10 +139,19 @@ struct Renderer::Impl {
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, viewUniforms.object.name());
   }
 
+  // All that is to be seen, into the channels of a G-buffer. setView() must have been called alike.
+  void addScene(FrameGraph& graph, const View& view, const Tile& tile, glm::vec2 sampleShift,
+                const GBufferRefs& gbuffer, const std::string& prefix = {}) {
+    addQuadrics(graph, quadrics, shaders, gbuffer, prefix);
+    surfaces.add(graph, shaders, {view, primitives->origin, tile, sampleShift, gbuffer, prefix});
+  }
+
   // One sample of one tile: every pass of the program is named here.
-  GBufferRefs buildFrame(FrameGraph& graph, const Frame& frame, const Tile& tile, TextureRef target) {
+  GBufferRefs buildFrame(FrameGraph& graph, const Frame& frame, const Tile& tile, glm::vec2 sampleShift,
+                         TextureRef target) {
+    setView(frame.view, tile, sampleShift);
     const GBufferRefs gbuffer = createGBuffer(graph, tile.width, tile.height);
-    addQuadrics(graph, quadrics, shaders, gbuffer);
+    addScene(graph, frame.view, tile, sampleShift, gbuffer);
     LightRefs light;
     if (frame.shadowMap.depth) {
       light.visibility = addShadow(graph, frame.settings.shadows, frame.shadowMap, shadowUniforms, shaders,
@@ -182,6 +194,8 @@ Renderer::~Renderer() = default;
 
 void Renderer::setPrimitives(std::shared_ptr<const Primitives> primitives) {
   impl_->primitives = std::move(primitives);
+  impl_->surfaces.takeStats(impl_->stats.surfaces);
+  impl_->surfaces.clear();
   impl_->quadrics.clear();
   impl_->occlusionBuffers.clear();
   impl_->silhouetteUniforms.clearGroups();
@@ -204,7 +218,7 @@ void Renderer::Impl::drawShadowMap(Frame& frame) {
   FrameGraph graph(pool);
   GBufferRefs gbuffer;
   gbuffer.depth = graph.import("shadow map", *frame.shadowMapTexture, Clear::zero);
-  addQuadrics(graph, quadrics, shaders, gbuffer, "shadow map: ");
+  addScene(graph, light, whole, {0, 0}, gbuffer, "shadow map: ");
   graph.want(gbuffer.depth);
   execute(graph);
   frame.shadowMap = {light, frame.shadowMapTexture.get()};
@@ -245,7 +259,7 @@ void Renderer::Impl::drawData(const Frame& frame, const Tile& tile, LayerTexels&
   setView(frame.view, tile, {0, 0});
   FrameGraph graph(pool);
   const GBufferRefs gbuffer = createGBuffer(graph, tile.width, tile.height);
-  addQuadrics(graph, quadrics, shaders, gbuffer);
+  addScene(graph, frame.view, tile, {0, 0}, gbuffer);
   if (!frame.layers.color) graph.leaveOut("pass shade", "no colour is wanted");
   wantLayers(graph, frame.layers, gbuffer);
   execute(graph);
@@ -266,11 +280,11 @@ void Renderer::Impl::drawTile(const Frame& frame, const Tile& part, const gl::Te
     if (frame.occlusion) occlusionBuffers.chooseDirections(sample, samples);
   };
   if (frame.shade.final) {
-    setView(frame.view, tile, {0, 0});
     setShadow(0);
     FrameGraph graph(pool);
     graph.leaveOut("pass resolve", "one sample per pixel");
-    const GBufferRefs gbuffer = buildFrame(graph, frame, tile, graph.import("picture", picture, Clear::none));
+    const GBufferRefs gbuffer =
+        buildFrame(graph, frame, tile, {0, 0}, graph.import("picture", picture, Clear::none));
     if (!dataApart) wantLayers(graph, frame.layers, gbuffer);
     execute(graph);
     if (!dataApart) readLayers(graph, frame.layers, gbuffer, tile, texels);
@@ -278,10 +292,10 @@ void Renderer::Impl::drawTile(const Frame& frame, const Tile& part, const gl::Te
   }
   const TextureLease sum = pool.lease("sum", {gl::TextureFormat::rgba32f, tile.width, tile.height});
   for (int i = 0; i < samples; ++i) {
-    setView(frame.view, tile, sampleOffset(i, samples));
     setShadow(i);
     FrameGraph graph(pool);
-    buildFrame(graph, frame, tile, graph.import("sum", *sum, i == 0 ? Clear::zero : Clear::none));
+    buildFrame(graph, frame, tile, sampleOffset(i, samples),
+               graph.import("sum", *sum, i == 0 ? Clear::zero : Clear::none));
     execute(graph);
     progress((i + 1.0) / samples);
   }
@@ -300,7 +314,7 @@ void Renderer::renderPicture(const View& view, const Lighting& lighting, const B
   MENISCUS_CHECK(settings.samples >= 1 && settings.samples <= kMaxSamples);
   MENISCUS_CHECK(!layout.layers.data() || layout.format == PixelFormat::rgbaFloat);
   Impl& r = *impl_;
-  r.prepare();
+  r.prepare(settings.surface);
   Frame frame{view,
               settings,
               {lighting, background, settings.occlusion, settings.fog, settings.depthUnsharp, settings.lines,
@@ -370,9 +384,9 @@ void Renderer::renderPicture(const View& view, const Lighting& lighting, const B
   }
 }
 
-HitImage Renderer::renderHits(const View& view, HitChannels channels) {
+HitImage Renderer::renderHits(const View& view, HitChannels channels, const SurfaceSettings& surface) {
   Impl& r = *impl_;
-  r.prepare();
+  r.prepare(surface);
   const int width = view.size.width, height = view.size.height;
   const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   HitImage image;
@@ -389,7 +403,7 @@ HitImage Renderer::renderHits(const View& view, HitChannels channels) {
       r.setView(view, tile, {0, 0});
       FrameGraph graph(r.pool);
       const GBufferRefs gbuffer = createGBuffer(graph, tile.width, tile.height);
-      addQuadrics(graph, r.quadrics, r.shaders, gbuffer);
+      r.addScene(graph, view, tile, {0, 0}, gbuffer);
       graph.leaveOut("pass shade", "no colour is wanted");
       const auto fetch = [&](TextureRef ref, auto* out, std::size_t perPixel) {
         const std::size_t first =
@@ -416,10 +430,12 @@ HitImage Renderer::renderHits(const View& view, HitChannels channels) {
 }
 
 RenderStats Renderer::stats() const {
+  impl_->surfaces.takeStats(impl_->stats.surfaces);
   RenderStats stats = impl_->stats;
   stats.programs = impl_->shaders.compiled();
   stats.compileMs = impl_->shaders.compileMs();
   stats.buffers = impl_->quadrics.buffers();
+  for (ResourceStats& buffer : impl_->surfaces.buffers()) stats.buffers.push_back(std::move(buffer));
   const gl::Buffer& groups = impl_->silhouetteUniforms.groups();
   if (groups.object) stats.buffers.push_back({"groups", groups.bytes});
   if (impl_->occlusionBuffers.bytes() > 0)

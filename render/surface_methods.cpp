@@ -1,0 +1,53 @@
+// The list of surface methods, and how one is chosen.
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/error.h"
+#include "render/surface_method.h"
+
+namespace meniscus {
+
+std::span<const SurfaceMethodInfo> surfaceMethods() {
+  return {};
+}
+
+const SurfaceMethodInfo& surfaceMethodFor(const SurfaceSettings& settings) {
+  const std::span<const SurfaceMethodInfo> methods = surfaceMethods();
+  if (settings.method == "auto") return methods.front();
+  std::string names = "auto";
+  for (const SurfaceMethodInfo& method : methods) {
+    if (method.name == settings.method) return method;
+    names += fmt::format(", {}", method.name);
+  }
+  throw UsageError(fmt::format("--surface-method: there is no '{}'; there are {}", settings.method, names));
+}
+
+SurfaceParameters surfaceParametersFor(const SurfaceMethodInfo& method, const SurfaceSettings& settings) {
+  SurfaceParameters values;
+  std::string names;
+  for (const SurfaceParameter& parameter : method.parameters) {
+    values.emplace(parameter.name, parameter.value);
+    names += (names.empty() ? "" : ", ") + std::string(parameter.name);
+  }
+  for (const auto& [name, value] : settings.parameters) {
+    const auto found = values.find(name);
+    if (found == values.end())
+      throw UsageError(fmt::format("--surface-option: the method {} has no '{}'; it has {}", method.name,
+                                   name, names.empty() ? "no options" : names));
+    for (const SurfaceParameter& parameter : method.parameters) {
+      if (parameter.name != name) continue;
+      const bool allowed = value >= parameter.least && value <= parameter.most &&
+                           (!parameter.whole || value == std::floor(value));
+      if (!allowed)
+        throw UsageError(fmt::format("--surface-option: {}={} is not allowed; give a {}number from {} to {}",
+                                     name, value, parameter.whole ? "whole " : "", parameter.least,
+                                     parameter.most));
+    }
+    found->second = value;
+  }
+  return values;
+}
+
+}  // namespace meniscus

@@ -1,0 +1,75 @@
+#include "render/surface_passes.h"
+
+#include <algorithm>
+
+#include "core/error.h"
+
+namespace meniscus {
+
+void SurfaceStats::add(const SurfaceStats& other) {
+  pixels += other.pixels;
+  pieces += other.pieces;
+  iterations += other.iterations;
+  mostIterations = std::max(mostIterations, other.mostIterations);
+  overflow += other.overflow;
+  grazing += other.grazing;
+  notConverged += other.notConverged;
+  for (const auto& [name, value] : other.details) {
+    const auto same = [&](const auto& detail) { return detail.first == name; };
+    const auto found = std::find_if(details.begin(), details.end(), same);
+    if (found == details.end()) {
+      details.emplace_back(name, value);
+    } else {
+      found->second += value;
+    }
+  }
+}
+
+void SurfacePasses::prepare(std::shared_ptr<const Primitives> primitives, const SurfaceSettings& settings) {
+  if (primitives->surfaces.empty()) return;
+  if (!methods_.empty() && settings_ == settings) return;
+  const SurfaceMethodInfo& method = surfaceMethodFor(settings);
+  const SurfaceParameters parameters = surfaceParametersFor(method, settings);
+  methods_.clear();
+  primitives_ = std::move(primitives);
+  settings_ = settings;
+  for (const MetaballField& field : primitives_->surfaces) {
+    requireValid(field, "surface");
+    methods_.push_back(method.make(parameters));
+    methods_.back()->prepare(field);
+  }
+}
+
+void SurfacePasses::clear() {
+  methods_.clear();
+  primitives_.reset();
+}
+
+void SurfacePasses::add(FrameGraph& graph, ShaderLibrary& shaders, const SurfaceTarget& target) {
+  if (methods_.empty()) graph.leaveOut("pass " + target.prefix + "surface", "the scene has none");
+  for (const auto& method : methods_) method->addPasses(graph, shaders, target);
+}
+
+void SurfacePasses::takeStats(std::vector<SurfaceStats>& stats) {
+  for (const auto& method : methods_) {
+    const SurfaceStats taken = method->takeStats();
+    const auto same = [&](const SurfaceStats& s) { return s.method == taken.method; };
+    const auto found = std::find_if(stats.begin(), stats.end(), same);
+    if (found == stats.end()) {
+      stats.push_back(taken);
+    } else {
+      found->add(taken);
+    }
+  }
+}
+
+std::vector<ResourceStats> SurfacePasses::buffers() const {
+  std::vector<ResourceStats> out;
+  for (const auto& method : methods_) {
+    const std::vector<ResourceStats> some = method->buffers();
+    out.insert(out.end(), some.begin(), some.end());
+  }
+  return out;
+}
+
+}  // namespace meniscus
