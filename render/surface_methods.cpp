@@ -5,12 +5,17 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "render/surface/bezier.h"
 #include "render/surface_method.h"
 
 namespace meniscus {
 
 std::span<const SurfaceMethodInfo> surfaceMethods() {
-  return {};
+  static const SurfaceMethodInfo kMethods[] = {
+      {"bezier", "depth-peeled Bezier clipping (Kanamori, Szego and Nishita 2008)", bezierParameters(),
+       makeBezier},
+  };
+  return kMethods;
 }
 
 const SurfaceMethodInfo& surfaceMethodFor(const SurfaceSettings& settings) {

@@ -1,0 +1,484 @@
+#include "render/surface/bezier.h"
+
+#include <glad/gl.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+
+#include "core/error.h"
+#include "render/surface/peel_regions.h"
+#include "render/surface/projected_field.h"
+
+namespace meniscus {
+
+namespace {
+
+constexpr SurfaceParameter kParameters[] = {
+    {"tolerance", "width to which a root is narrowed down, as a share of the smallest support around it",
+     1e-5, 1e-7, 0.1, false},
+    {"list", "ids that a pixel's list can hold at first", 14, 1, 1024, true},
+    {"repair", "1: pixels whose list is too short are done again with a longer one; 0: as the paper does", 1,
+     0, 1, true},
+    {"culling", "1: balls behind the cores of others are not drawn (only if no coefficient is negative)", 1,
+     0, 1, true},
+    {"tiles", "side of the grid of screen tiles that are peeled each for itself; 0: the screen is one", 8, 0,
+     256, true},
+    {"clipping", "1: Bezier clipping; 0: halving", 1, 0, 1, true},
+};
+
+// Storage blocks end at 128 MiB on the reference driver.
+constexpr std::int64_t kListBytes = std::int64_t{96} << 20;
+constexpr int kHeaderSlots = 5;  // shaders/include/bezier_lists.glsl
+constexpr int kListGrowth = 8;
+// Of 0x20000000 steps on either side some are left out (shaders/include/bezier.glsl).
+constexpr double kSteps = 5.2e8;
+
+// BezierUniforms of shaders/include/bezier.glsl.
+struct BezierBlock {
+  glm::vec4 steps;
+  glm::ivec4 region, list;
+};
+
+// Control of shaders/surface/bezier_step.frag, before its cells.
+struct Control {
+  std::uint32_t overflow = 0;
+  std::uint32_t box[4] = {0xFFFFFFFFu, 0xFFFFFFFFu, 0, 0};
+};
+
+// Statistics of shaders/surface/bezier_step.frag.
+struct Sums {
+  std::uint32_t pixels, pieces, iterations, mostIterations, overflow, grazing, unfinished, events;
+  std::uint32_t solved, mostInPiece, hits, longest;
+};
+constexpr int kSumCount = 64;
+
+// A buffer that grows.
+class Storage {
+ public:
+  // Room for so many bytes; what was in it may be lost.
+  void reserve(std::uint64_t bytes) {
+    if (buffer_.bytes < bytes) {
+      buffer_ = {};
+      buffer_ = gl::Buffer::updatable(std::max<std::uint64_t>(bytes, 256));
+    }
+  }
+  void write(const void* data, std::uint64_t bytes, std::uint64_t offset = 0) {
+    if (bytes > 0)
+      glNamedBufferSubData(buffer_.object.name(), static_cast<GLintptr>(offset),
+                           static_cast<GLsizeiptr>(bytes), data);
+  }
+  void read(void* data, std::uint64_t bytes, std::uint64_t offset = 0) const {
+    glGetNamedBufferSubData(buffer_.object.name(), static_cast<GLintptr>(offset),
+                            static_cast<GLsizeiptr>(bytes), data);
+  }
+  void zero() {
+    glClearNamedBufferData(buffer_.object.name(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+  }
+  void bind(GLenum target, GLuint binding) const { glBindBufferBase(target, binding, buffer_.object.name()); }
+  unsigned name() const { return buffer_.object.name(); }
+  std::uint64_t bytes() const { return buffer_.bytes; }
+
+ private:
+  gl::Buffer buffer_;
+};
+
+// Textures and framebuffers of one region.
+struct RegionTargets {
+  TextureLease events, eventKeys, lastSteps, lastKeys;
+  unsigned peel, coresOnly, step;
+};
+
+class Bezier : public SurfaceMethod {
+ public:
+  explicit Bezier(const SurfaceParameters& values)
+      : tolerance_(values.at("tolerance")),
+        list_(static_cast<int>(values.at("list"))),
+        tiles_(static_cast<int>(values.at("tiles"))),
+        repair_(values.at("repair") != 0),
+        culling_(values.at("culling") != 0),
+        clipping_(values.at("clipping") != 0) {}
+
+  void prepare(const MetaballField& field) override;
+  void addPasses(FrameGraph& graph, ShaderLibrary& shaders, const SurfaceTarget& target) override;
+  SurfaceStats takeStats() override;
+  std::vector<ResourceStats> buffers() const override;
+
+ private:
+  // What is the same for all regions of a target.
+  struct Frame {
+    const PassContext& context;
+    ShaderLibrary& shaders;
+    GBufferRefs gbuffer;
+    ScreenRect screen;
+    ProjectedField projected;
+    ShaderFlags kernelFlags;
+    std::vector<bool> left;  // of each ball: whether culling left it anywhere
+  };
+  // What is being drawn of it.
+  struct Region {
+    ScreenRect rect;
+    int list;
+    bool again;
+    RegionTargets targets;
+    std::vector<PeelCell> cells;
+    std::vector<PeelInstance> instances;
+  };
+
+  void draw(const PassContext& context, ShaderLibrary& shaders, const View& view, const glm::dvec3& origin,
+            const Tile& tile, glm::vec2 sampleShift, const GBufferRefs& gbuffer);
+  std::int64_t mostPixels(int list) const;
+  void drawRegion(Frame& frame, const ScreenRect& rect, int list, bool again);
+  void setUniforms(const Frame& frame, const Region& region);
+  void uploadInstances(const Region& region);
+  void cull(Frame& frame, Region& region);
+  void peel(Frame& frame, Region& region);
+  void peelLayer(Frame& frame, Region& region, const std::vector<std::size_t>& active);
+  void step(Frame& frame, Region& region, const std::vector<std::size_t>& active, int layer);
+  void shade(Frame& frame, const Region& region);
+  void drawCells(const Region& region, const std::vector<PeelCell>& cells) const;
+  void scissorTo(const PeelCell& cell, const ScreenRect& corner) const;
+
+  double tolerance_;
+  int list_, tiles_;
+  bool repair_, culling_, clipping_;
+  const MetaballField* field_ = nullptr;
+  std::vector<float> coreShares_;
+  gl::Object vertexArray_;
+  Storage instances_, balls_, lists_, control_, seen_, spilled_, statistics_;
+  gl::Buffer fieldUniforms_, bezierUniforms_;
+  // Counted here rather than by shaders.
+  double ballsInView_ = 0, ballsLeft_ = 0, layers_ = 0, cellLayers_ = 0, repairs_ = 0;
+};
+
+}  // namespace
+
+std::span<const SurfaceParameter> bezierParameters() {
+  return kParameters;
+}
+
+std::unique_ptr<SurfaceMethod> makeBezier(const SurfaceParameters& values) {
+  return std::make_unique<Bezier>(values);
+}
+
+namespace {
+
+void Bezier::prepare(const MetaballField& field) {
+  field_ = &field;
+  for (const Metaball& ball : field.balls)
+    coreShares_.push_back(
+        static_cast<float>(coreShare(field.kernel, field.level, static_cast<double>(ball.coefficient))));
+  culling_ = culling_ && field.allPositive();
+
+  GLuint name = 0;
+  glCreateVertexArrays(1, &name);
+  vertexArray_ = gl::Object(gl::ObjectKind::vertexArray, name);
+  glVertexArrayBindingDivisor(name, 0, 1);
+  const std::size_t offsets[] = {offsetof(PeelInstance, box), offsetof(PeelInstance, pixel),
+                                 offsetof(PeelInstance, place), offsetof(PeelInstance, eye)};
+  for (GLuint i = 0; i < 4; ++i) {
+    glEnableVertexArrayAttrib(name, i);
+    glVertexArrayAttribFormat(name, i, 4, GL_FLOAT, GL_FALSE, static_cast<GLuint>(offsets[i]));
+    glVertexArrayAttribBinding(name, i, 0);
+  }
+  glEnableVertexArrayAttrib(name, 4);
+  glVertexArrayAttribIFormat(name, 4, 2, GL_UNSIGNED_INT, offsetof(PeelInstance, ball));
+  glVertexArrayAttribBinding(name, 4, 0);
+  fieldUniforms_ = gl::Buffer::updatable(sizeof(FieldBlock));
+  bezierUniforms_ = gl::Buffer::updatable(sizeof(BezierBlock));
+  statistics_.reserve(sizeof(Sums) * kSumCount);
+  statistics_.zero();
+}
+
+void Bezier::addPasses(FrameGraph& graph, ShaderLibrary& shaders, const SurfaceTarget& target) {
+  const GBufferRefs g = target.gbuffer;
+  std::vector<FrameGraph::Attachment> writes{{g.depth, FrameGraph::kDepth}};
+  for (const auto& [channel, location] :
+       {std::pair{g.albedo, 0}, std::pair{g.normal, 1}, std::pair{g.id, 2}, std::pair{g.distance, 3}}) {
+    if (channel.valid()) writes.push_back({channel, location});
+  }
+  graph.addPass(target.prefix + "surface", {g.depth}, writes,
+                [this, &shaders, view = target.view, origin = target.origin, tile = target.tile,
+                 shift = target.sampleShift,
+                 g](const PassContext& context) { draw(context, shaders, view, origin, tile, shift, g); });
+}
+
+void Bezier::draw(const PassContext& context, ShaderLibrary& shaders, const View& view,
+                  const glm::dvec3& origin, const Tile& tile, glm::vec2 sampleShift,
+                  const GBufferRefs& gbuffer) {
+  Frame frame{context,
+              shaders,
+              gbuffer,
+              {0, 0, tile.width, tile.height},
+              projectField(*field_, coreShares_, view, origin, tile, sampleShift),
+              {},
+              {}};
+  if (frame.projected.balls.empty()) return;
+  if (field_->kernel.shape == KernelShape::quartic) frame.kernelFlags.insert("KERNEL_QUARTIC");
+  if (field_->kernel.shape == KernelShape::power) frame.kernelFlags.insert("KERNEL_POWER");
+  if (!clipping_) frame.kernelFlags.insert("PLAIN");
+  frame.left.assign(frame.projected.balls.size(), false);
+
+  const std::uint64_t ballBytes = frame.projected.balls.size() * sizeof(ProjectedBall);
+  balls_.reserve(ballBytes);
+  balls_.write(frame.projected.balls.data(), ballBytes);
+  spilled_.reserve(static_cast<std::uint64_t>(frame.screen.pixels()) * 4);
+  spilled_.zero();
+  fieldUniforms_.update(&frame.projected.block);
+  glBindBufferBase(GL_UNIFORM_BUFFER, 1, fieldUniforms_.object.name());
+  glBindBufferBase(GL_UNIFORM_BUFFER, 2, bezierUniforms_.object.name());
+  balls_.bind(GL_SHADER_STORAGE_BUFFER, 0);
+  spilled_.bind(GL_SHADER_STORAGE_BUFFER, 4);
+  statistics_.bind(GL_SHADER_STORAGE_BUFFER, 5);
+
+  for (const ScreenRect& rect : splitRect(frame.screen, mostPixels(list_)))
+    drawRegion(frame, rect, list_, false);
+  ballsInView_ += static_cast<double>(frame.projected.balls.size());
+  ballsLeft_ += static_cast<double>(std::count(frame.left.begin(), frame.left.end(), true));
+  context.bindTarget();
+}
+
+std::int64_t Bezier::mostPixels(int list) const {
+  return kListBytes / (4 * (std::int64_t{list} + kHeaderSlots));
+}
+
+// The region's surface into the G-buffer. Pixels whose list is too short are left out and, if they are to be
+// repaired, drawn again with a longer one; `again`: only those that were left out.
+void Bezier::drawRegion(Frame& frame, const ScreenRect& rect, int list, bool again) {
+  Region region{rect, list, again, {}, {}, {}};
+  region.cells = makeCells(frame.projected, frame.screen, rect, tiles_, region.instances);
+  if (region.cells.empty()) return;
+  TexturePool& pool = frame.context.pool();
+  const auto lease = [&](const char* name, gl::TextureFormat format) {
+    return pool.lease(name, {format, rect.width, rect.height});
+  };
+  RegionTargets& t = region.targets;
+  t.events = lease("surface: events", gl::TextureFormat::depth32f);
+  t.eventKeys = lease("surface: balls of events", gl::TextureFormat::r32ui);
+  t.lastSteps = lease("surface: last events", gl::TextureFormat::r32ui);
+  t.lastKeys = lease("surface: balls of last events", gl::TextureFormat::r32ui);
+  t.peel = pool.framebuffer({t.eventKeys.get()}, t.events.get());
+  t.coresOnly = pool.framebuffer({}, t.events.get());
+  t.step = pool.framebuffer({t.lastSteps.get(), t.lastKeys.get()}, nullptr);
+
+  lists_.reserve(static_cast<std::uint64_t>(rect.pixels()) * 4 *
+                 static_cast<std::uint64_t>(list + kHeaderSlots));
+  lists_.bind(GL_SHADER_STORAGE_BUFFER, 1);
+  control_.reserve(sizeof(Control) + 4 * region.cells.size());
+  control_.zero();
+  const Control fresh;
+  control_.write(&fresh, sizeof fresh);
+  control_.bind(GL_SHADER_STORAGE_BUFFER, 2);
+  setUniforms(frame, region);
+  uploadInstances(region);
+  glViewport(0, 0, rect.width, rect.height);
+  glEnable(GL_SCISSOR_TEST);
+  if (culling_) cull(frame, region);
+  for (const PeelInstance& instance : region.instances) frame.left[instance.ball] = true;
+  if (!region.cells.empty()) {
+    peel(frame, region);
+    shade(frame, region);
+  }
+  glDisable(GL_SCISSOR_TEST);
+  if (region.cells.empty() || !repair_) return;
+
+  Control control;
+  control_.read(&control, sizeof control);
+  if (control.overflow == 0) return;
+  MENISCUS_CHECK(list < static_cast<int>(frame.projected.balls.size()));
+  ++repairs_;
+  const int longer = std::min(list * kListGrowth, static_cast<int>(frame.projected.balls.size()));
+  const auto at = [&](int i) { return static_cast<int>(control.box[i]); };
+  const ScreenRect spilled{rect.x + at(0), rect.y + at(1), at(2) - at(0) + 1, at(3) - at(1) + 1};
+  region.targets = {};
+  for (const ScreenRect& part : splitRect(spilled, mostPixels(longer))) drawRegion(frame, part, longer, true);
+}
+
+void Bezier::setUniforms(const Frame& frame, const Region& region) {
+  const double step = std::exp2(std::ceil(std::log2(frame.projected.reach / kSteps)));
+  BezierBlock block;
+  block.steps = {static_cast<float>(step), static_cast<float>(1 / step), static_cast<float>(tolerance_),
+                 0.0f};
+  block.region = {region.rect.x, region.rect.y, region.rect.width, region.rect.height};
+  block.list = {region.list, repair_ ? 1 : 0, region.again ? 1 : 0, frame.screen.width};
+  bezierUniforms_.update(&block);
+}
+
+void Bezier::uploadInstances(const Region& region) {
+  const std::uint64_t bytes = region.instances.size() * sizeof(PeelInstance);
+  instances_.reserve(bytes);
+  instances_.write(region.instances.data(), bytes);
+  glVertexArrayVertexBuffer(vertexArray_.name(), 0, instances_.name(), 0, sizeof(PeelInstance));
+}
+
+void Bezier::scissorTo(const PeelCell& cell, const ScreenRect& corner) const {
+  glScissor(corner.x + cell.rect.x, corner.y + cell.rect.y, cell.rect.width, cell.rect.height);
+}
+
+void Bezier::drawCells(const Region& region, const std::vector<PeelCell>& cells) const {
+  glBindVertexArray(vertexArray_.name());
+  glUniform2f(0, static_cast<float>(region.rect.width), static_cast<float>(region.rect.height));
+  for (const PeelCell& cell : cells) {
+    scissorTo(cell, {});
+    glDrawArraysInstancedBaseInstance(GL_TRIANGLE_STRIP, 0, 4, cell.count, static_cast<GLuint>(cell.first));
+  }
+}
+
+// Leaves out, cell by cell, the balls that lie behind kernel spheres (§5.2) or behind what is drawn already.
+// Where a ray may begin inside a ball nothing can be said: it looks for its exit, which no core hides.
+void Bezier::cull(Frame& frame, Region& region) {
+  const float farthest = 1.0f;
+  glBindFramebuffer(GL_FRAMEBUFFER, region.targets.coresOnly);
+  glScissor(0, 0, region.rect.width, region.rect.height);
+  glClearBufferfv(GL_DEPTH, 0, &farthest);
+  std::vector<PeelCell> outside = region.cells;
+  std::erase_if(outside, [](const PeelCell& cell) { return cell.crossesNear; });
+  glUseProgram(frame.shaders.program("surface/bezier_peel.vert", "surface/bezier_peel.frag", {"CORES"}));
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LESS);
+  drawCells(region, outside);
+  glDisable(GL_DEPTH_TEST);
+
+  seen_.reserve(region.instances.size() * 4);
+  seen_.zero();
+  seen_.bind(GL_SHADER_STORAGE_BUFFER, 3);
+  glBindFramebuffer(GL_FRAMEBUFFER, region.targets.step);  // nothing is written to it
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  glBindTextureUnit(0, region.targets.events->object.name());
+  glBindTextureUnit(1, frame.context.texture(frame.gbuffer.depth).object.name());
+  glUseProgram(frame.shaders.program("surface/bezier_peel.vert", "surface/bezier_peel.frag", {"VISIBLE"}));
+  drawCells(region, region.cells);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  std::vector<std::uint32_t> seen(region.instances.size());
+  seen_.read(seen.data(), seen.size() * 4);
+  keepSeen(region.cells, region.instances, seen);
+  uploadInstances(region);
+}
+
+// Layers, until no cell has a pixel that is not finished.
+void Bezier::peel(Frame& frame, Region& region) {
+  const GLuint zero[4] = {0, 0, 0, 0};
+  glBindFramebuffer(GL_FRAMEBUFFER, region.targets.step);
+  glScissor(0, 0, region.rect.width, region.rect.height);
+  glClearBufferuiv(GL_COLOR, 0, zero);
+  glClearBufferuiv(GL_COLOR, 1, zero);
+  std::vector<std::size_t> active(region.cells.size());
+  for (std::size_t i = 0; i < active.size(); ++i) active[i] = i;
+  std::vector<std::uint32_t> progress(region.cells.size());
+  for (int layer = 1; !active.empty(); ++layer) {
+    peelLayer(frame, region, active);
+    step(frame, region, active, layer);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+    control_.read(progress.data(), progress.size() * 4, sizeof(Control));
+    ++layers_;
+    cellLayers_ += static_cast<double>(active.size());
+    std::erase_if(active, [&](std::size_t i) { return progress[i] != static_cast<std::uint32_t>(layer); });
+  }
+}
+
+void Bezier::peelLayer(Frame& frame, Region& region, const std::vector<std::size_t>& active) {
+  const float farthest = 1.0f;
+  glBindFramebuffer(GL_FRAMEBUFFER, region.targets.peel);
+  glScissor(0, 0, region.rect.width, region.rect.height);
+  glClearBufferfv(GL_DEPTH, 0, &farthest);
+  glBindTextureUnit(0, region.targets.lastSteps->object.name());
+  glBindTextureUnit(1, region.targets.lastKeys->object.name());
+  glUseProgram(frame.shaders.program("surface/bezier_peel.vert", "surface/bezier_peel.frag", {}));
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LESS);
+  std::vector<PeelCell> cells;
+  for (const std::size_t i : active) cells.push_back(region.cells[i]);
+  drawCells(region, cells);
+  glDisable(GL_DEPTH_TEST);
+}
+
+// Each texel of the last events is read and written by one and the same fragment, which OpenGL 4.5 allows
+// (§9.3.1); glTextureBarrier() comes between layers.
+void Bezier::step(Frame& frame, Region& region, const std::vector<std::size_t>& active, int layer) {
+  glBindFramebuffer(GL_FRAMEBUFFER, region.targets.step);
+  glTextureBarrier();
+  glBindTextureUnit(2, region.targets.events->object.name());
+  glBindTextureUnit(3, region.targets.eventKeys->object.name());
+  glBindTextureUnit(4, frame.context.texture(frame.gbuffer.depth).object.name());
+  glUseProgram(frame.shaders.program("post/fullscreen.vert", "surface/bezier_step.frag", frame.kernelFlags));
+  for (const std::size_t i : active) {
+    scissorTo(region.cells[i], {});
+    glUniform2i(0, static_cast<GLint>(i), layer);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+  }
+}
+
+void Bezier::shade(Frame& frame, const Region& region) {
+  frame.context.bindTarget();
+  ShaderFlags flags;
+  if (frame.context.isLive(frame.gbuffer.albedo)) flags.insert("ALBEDO");
+  if (frame.context.isLive(frame.gbuffer.normal)) flags.insert("NORMAL");
+  if (frame.context.isLive(frame.gbuffer.id)) flags.insert("ID");
+  if (frame.context.isLive(frame.gbuffer.distance)) flags.insert("DISTANCE");
+  glUseProgram(frame.shaders.program("surface/bezier_surface.vert", "surface/bezier_surface.frag", flags));
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_GREATER);
+  for (const PeelCell& cell : region.cells) {
+    scissorTo(cell, region.rect);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+  }
+  glDisable(GL_DEPTH_TEST);
+}
+
+SurfaceStats Bezier::takeStats() {
+  SurfaceStats stats;
+  stats.method = "bezier";
+  std::array<Sums, kSumCount> sums{};
+  if (statistics_.bytes() > 0) {
+    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+    statistics_.read(sums.data(), sizeof sums);
+    statistics_.zero();
+  }
+  double events = 0, solved = 0, hits = 0, mostInPiece = 0, longest = 0;
+  for (const Sums& s : sums) {
+    stats.pixels += s.pixels;
+    stats.pieces += s.pieces;
+    stats.iterations += s.iterations;
+    stats.mostIterations = std::max<std::uint64_t>(stats.mostIterations, s.mostIterations);
+    stats.overflow += s.overflow;
+    stats.grazing += s.grazing;
+    stats.notConverged += s.unfinished;
+    events += s.events;
+    solved += s.solved;
+    hits += s.hits;
+    mostInPiece = std::max<double>(mostInPiece, s.mostInPiece);
+    longest = std::max<double>(longest, s.longest);
+  }
+  stats.details = {{"hits", hits},
+                   {"events peeled", events},
+                   {"pieces that took iterations", solved},
+                   {"most iterations of one piece", mostInPiece},
+                   {"longest list", longest},
+                   {"balls in view", ballsInView_},
+                   {"balls left after culling", ballsLeft_},
+                   {"layers", layers_},
+                   {"layers of tiles", cellLayers_},
+                   {"repairs", repairs_}};
+  ballsInView_ = ballsLeft_ = layers_ = cellLayers_ = repairs_ = 0;
+  return stats;
+}
+
+std::vector<ResourceStats> Bezier::buffers() const {
+  std::vector<ResourceStats> out;
+  const auto add = [&](const char* name, std::uint64_t bytes) {
+    if (bytes > 0) out.push_back({name, bytes});
+  };
+  add("surface: balls", balls_.bytes());
+  add("surface: instances", instances_.bytes());
+  add("surface: lists", lists_.bytes());
+  add("surface: pixels spilled", spilled_.bytes());
+  add("surface: control", control_.bytes() + seen_.bytes() + statistics_.bytes());
+  return out;
+}
+
+}  // namespace
+
+}  // namespace meniscus

@@ -1,0 +1,49 @@
+#pragma once
+// A field's balls as one view sees them, computed in double precision: what shaders need to know of where a
+// ray passes them, and where on the screen they are.
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <vector>
+
+#include "core/metaball_field.h"
+#include "core/view.h"
+#include "render/view_block.h"
+
+namespace meniscus {
+
+/// Ball of shaders/include/field.glsl (std430).
+struct ProjectedBall {
+  glm::vec4 pixel;  ///< projected centre: hi xy, lo xy
+  glm::vec4 place;  ///< size of a pixel there or 0; R^2; how far it lies below the plane, hi and lo
+  glm::vec4 eye;  ///< from the centre to the eye if rays are taken from there; w: squared radius of its core
+  float coefficient;
+  float inverseR2;
+  std::uint32_t color, id;
+};
+static_assert(sizeof(ProjectedBall) == 64);
+
+/// FieldUniforms of shaders/include/ball_ray.glsl (std140).
+struct FieldBlock {
+  glm::vec4
+      plane;  ///< z of the plane that places on a ray are measured from; height of the eye above it, hi, lo
+  glm::vec4 field;  ///< level; exponent; kernel; 0
+};
+
+struct ProjectedField {
+  std::vector<ProjectedBall>
+      balls;  ///< that reach behind the near plane and into the target, in the field's order
+  std::vector<glm::vec4> boxes;  ///< of each: rectangle around it, in pixels of the target
+  std::vector<bool> crossNear;   ///< of each: whether it reaches before the near plane, too
+  FieldBlock block;
+  double reach = 0;  ///< no place on a ray where a ball is met is farther from the plane [Å]
+};
+
+/// coreShares: coreShare() of each ball.
+ProjectedField projectField(const MetaballField& field, const std::vector<float>& coreShares,
+                            const View& view, const glm::dvec3& origin, const Tile& tile,
+                            glm::vec2 sampleShift);
+
+}  // namespace meniscus

@@ -1,0 +1,66 @@
+// Where a ray passes a ball of a field. Needs include/view.glsl.
+//
+// A place on the ray is measured from the plane z = uPlane.x of view space, which lies where the field is: an
+// eye thousands of ångström away costs no digits. A ball's own numbers are relative to its centre, and its
+// place on the ray is a pair of floats: balls of a millionth of the scene's size keep their digits, too.
+
+layout(std140, binding = 1) uniform FieldUniforms {
+  vec4 uPlane;  // x: z of the plane that places are measured from; y + z: height of the eye above it; w: 0
+  vec4 uField;  // x: level; y: exponent of the power kernel; z: 0 sextic, 1 quartic, 2 power; w: 0
+};
+
+// What a ball's projection comes to (render/surface/projected_field.h).
+struct BallProjection {
+  vec4 pixel;  // its centre: hi xy, lo xy
+  vec4 place;  // x: size of a pixel there, 0 if the ray is taken from the eye; y: R^2; z + w: how far its
+               // centre (or the eye) lies below the plane
+  vec4 eye;  // xyz: from the centre to the eye, if the ray is taken from there; w: squared radius of the core
+};
+
+struct SceneRay {
+  vec2 pixel;
+  vec3 direction;  // unit
+  float stretch;   // length of the ray per height
+};
+
+struct BallRay {
+  vec3 nearest;      // the ray's nearest point to the centre, relative to it
+  Split middle;      // its place on the ray
+  float halfChord2;  // R^2 less its squared distance; the ball is met if that is positive
+};
+
+SceneRay sceneRay(vec2 pixel) {
+  SceneRay ray;
+  ray.pixel = pixel;
+  ray.direction = rayDirection(uView, pixel);
+  precise vec2 slope = (pixel - uView.center.xy) * uView.scale.x;
+  precise float square = 1.0 + dot(slope, slope);
+  ray.stretch = isPerspective(uView) ? sqrt(square) : 1.0;
+  return ray;
+}
+
+BallRay ballOnRay(BallProjection ball, SceneRay ray) {
+  precise vec2 off = (ray.pixel - ball.pixel.xy) - ball.pixel.zw;
+  precise vec3 point = ball.eye.xyz + ball.place.x * vec3(off, 0.0);
+  precise float toward = -dot(point, ray.direction);
+  precise vec3 nearly = point + toward * ray.direction;
+  precise float rest = -dot(nearly, ray.direction);  // once more: point may be several radii away
+  precise vec3 nearest = nearly + rest * ray.direction;
+  Split plane = twoProduct(ball.place.z, ray.stretch);
+  precise float further = toward + rest;
+  precise float below = plane.lo + ball.place.w * ray.stretch;
+  BallRay b;
+  b.nearest = nearest;
+  b.middle = addSplit(makeSplit(plane.hi, below), makeSplit(further, 0.0));
+  precise float halfChord2 = ball.place.y - dot(nearest, nearest);
+  b.halfChord2 = halfChord2;
+  return b;
+}
+
+// From b to a, two places; right relative to the difference.
+float placeBetween(Split b, Split a) {
+  precise float far = a.hi - b.hi;
+  precise float near = a.lo - b.lo;
+  precise float sum = far + near;
+  return sum;
+}
