@@ -4,8 +4,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <glm/trigonometric.hpp>
+#include <iterator>
 #include <memory>
 #include <new>
 #include <set>
@@ -29,6 +31,7 @@ namespace meniscus {
 namespace {
 
 using Molecules = std::vector<std::shared_ptr<const Molecule>>;
+using Objects = std::vector<SceneObject>;
 
 /// Passes rows on and counts the time that takes.
 class TimedSink : public RowSink {
@@ -59,8 +62,11 @@ class RenderRun {
   Molecules readMolecules(const std::string& file);
   void showNotes(const std::string& file, const Logger& logger);
   void requireMemory(const std::string& file, const Molecules& molecules) const;
+  bool draws(Representation representation) const;
+  bool drawsBonds() const;
   SceneObject objectFor(std::shared_ptr<const Molecule> molecule) const;
-  Camera cameraFor(const std::string& file, const std::vector<SceneObject>& objects) const;
+  Objects objectsFor(const std::string& file, const std::shared_ptr<const Molecule>& molecule) const;
+  Camera cameraFor(const std::string& file, const std::vector<Objects>& models) const;
   void drawPicture(const std::string& file, const std::string& output, Scene scene);
   ImageFileOptions imageOptionsFor(const std::string& file, const std::string& output,
                                    const Scene& scene) const;
@@ -102,8 +108,10 @@ int RenderRun::run() {
 // What is wrong whatever the files hold.
 void RenderRun::checkBeforeReading() const {
   requireDistinctOutputs(pattern_, options_.files);
-  for (const auto& [option, cid] :
-       {std::pair{"--select", options_.structure.select}, std::pair{"--focus", options_.focus}}) {
+  std::vector<std::pair<const char*, std::string>> selections{{"--select", options_.structure.select},
+                                                              {"--focus", options_.focus}};
+  for (const ShownApart& shown : options_.shown) selections.emplace_back("--show", shown.cid);
+  for (const auto& [option, cid] : selections) {
     try {
       if (!cid.empty()) selectAtoms(Molecule{}, cid);
     } catch (const UsageError& error) {
@@ -118,14 +126,15 @@ void RenderRun::checkBeforeReading() const {
 void RenderRun::renderFile(const std::string& file) {
   const Molecules molecules = readMolecules(file);
   requireMemory(file, molecules);
-  std::vector<SceneObject> objects;
-  for (const auto& molecule : molecules) objects.push_back(objectFor(molecule));
+  std::vector<Objects> models;
+  for (const auto& molecule : molecules) models.push_back(objectsFor(file, molecule));
   Scene scene;
   scene.background = options_.background;
-  scene.camera = cameraFor(file, objects);
+  scene.camera = cameraFor(file, models);
 
   if (!pattern_.namesModel()) {
-    scene.objects = std::move(objects);
+    for (Objects& objects : models)
+      std::move(objects.begin(), objects.end(), std::back_inserter(scene.objects));
     drawPicture(file, pattern_.nameFor(file, molecules.front()->model), std::move(scene));
     return;
   }
@@ -136,10 +145,9 @@ void RenderRun::renderFile(const std::string& file) {
         fmt::format("'{}': has several models of the same number, so {{model}} cannot tell them apart; "
                     "choose one with --model",
                     file));
-  for (SceneObject& object : objects) {
-    const std::string output = pattern_.nameFor(file, object.molecule->model);
-    scene.objects.clear();
-    scene.objects.push_back(std::move(object));
+  for (Objects& objects : models) {
+    const std::string output = pattern_.nameFor(file, objects.front().molecule->model);
+    scene.objects = std::move(objects);
     drawPicture(file, output, scene);
   }
 }
@@ -153,11 +161,11 @@ Molecules RenderRun::readMolecules(const std::string& file) {
   }
   Molecules molecules;
   for (Molecule& molecule : structure.models) {
-    if (needsBonds(options_.representation)) {
+    if (drawsBonds()) {
       const Timed timed(report_.bondsSeconds);
       addMissingBonds(molecule, logger);
     }
-    if (options_.representation == Representation::ellipsoids) noteOddDisplacements(molecule, logger);
+    if (draws(Representation::ellipsoids)) noteOddDisplacements(molecule, logger);
     molecules.push_back(std::make_shared<const Molecule>(std::move(molecule)));
   }
   showNotes(file, logger);
@@ -206,21 +214,62 @@ SceneObject RenderRun::objectFor(std::shared_ptr<const Molecule> molecule) const
   object.licoriceRadius = options_.stickRadius.value_or(object.licoriceRadius);
   object.ellipsoidStickRadius = options_.stickRadius.value_or(object.ellipsoidStickRadius);
   object.probability = options_.probability;
+  object.surface = options_.surfaceShape;
   return object;
+}
+
+bool RenderRun::draws(Representation representation) const {
+  return options_.representation == representation ||
+         std::any_of(options_.shown.begin(), options_.shown.end(),
+                     [&](const ShownApart& shown) { return shown.representation == representation; });
+}
+
+bool RenderRun::drawsBonds() const {
+  return needsBonds(options_.representation) ||
+         std::any_of(options_.shown.begin(), options_.shown.end(),
+                     [&](const ShownApart& shown) { return needsBonds(shown.representation); });
+}
+
+// The molecule in its representation, but for the atoms that --show draws in one of their own.
+Objects RenderRun::objectsFor(const std::string& file,
+                              const std::shared_ptr<const Molecule>& molecule) const {
+  const SceneObject whole = objectFor(molecule);
+  if (options_.shown.empty()) return {whole};
+  std::vector<std::size_t> owner(molecule->atomCount(), 0);
+  for (std::size_t i = 0; i < options_.shown.size(); ++i) {
+    const std::vector<std::uint32_t> atoms = selectAtoms(*molecule, options_.shown[i].cid);
+    if (atoms.empty())
+      throw InputError(
+          fmt::format("'{}': --show '{}' matches none of the atoms that are drawn; see meniscus info", file,
+                      options_.shown[i].cid));
+    for (const std::uint32_t atom : atoms) owner[atom] = i + 1;
+  }
+  Objects objects(options_.shown.size() + 1, whole);
+  for (std::size_t i = 0; i < options_.shown.size(); ++i)
+    objects[i + 1].representation = options_.shown[i].representation;
+  for (std::uint32_t atom = 0; atom < owner.size(); ++atom) objects[owner[atom]].atoms.push_back(atom);
+  std::erase_if(objects, [](const SceneObject& object) { return object.atoms.empty(); });
+  return objects;
 }
 
 // One camera for all models of a file, so that they can be compared and make a film; it looks as suits the
 // first.
-Camera RenderRun::cameraFor(const std::string& file, const std::vector<SceneObject>& objects) const {
-  std::vector<FitSphere> spheres;
-  for (const SceneObject& object : objects) {
-    std::vector<std::uint32_t> atoms;
-    if (!options_.focus.empty()) {
-      atoms = selectAtoms(*object.molecule, options_.focus);
-      if (atoms.empty()) continue;
+Camera RenderRun::cameraFor(const std::string& file, const std::vector<Objects>& models) const {
+  std::vector<FitSphere> spheres, first;
+  for (const Objects& objects : models) {
+    for (const SceneObject& object : objects) {
+      if (&objects == &models.front()) {
+        const std::vector<FitSphere> some = fitSpheres(object);
+        first.insert(first.end(), some.begin(), some.end());
+      }
+      std::vector<std::uint32_t> atoms;
+      if (!options_.focus.empty()) {
+        atoms = selectAtoms(*object.molecule, options_.focus);
+        if (atoms.empty()) continue;
+      }
+      const std::vector<FitSphere> some = fitSpheres(object, atoms);
+      spheres.insert(spheres.end(), some.begin(), some.end());
     }
-    const std::vector<FitSphere> some = fitSpheres(object, atoms);
-    spheres.insert(spheres.end(), some.begin(), some.end());
   }
   if (spheres.empty())
     throw InputError(
@@ -233,8 +282,7 @@ Camera RenderRun::cameraFor(const std::string& file, const std::vector<SceneObje
   camera.zoom = options_.zoom;
   switch (options_.orientation.kind) {
     case Orientation::Kind::principal:
-      camera.orientation =
-          principalAxes(fitSpheres(objects.front()), options_.size.height > options_.size.width);
+      camera.orientation = principalAxes(first, options_.size.height > options_.size.width);
       break;
     case Orientation::Kind::axis:
       camera.orientation = lookDownAxis(options_.orientation.axis);
@@ -251,9 +299,12 @@ void RenderRun::drawPicture(const std::string& file, const std::string& output, 
   PictureReport picture;
   picture.input = file;
   picture.output = output;
+  const Molecule* counted = nullptr;
   for (const SceneObject& object : scene.objects) {
-    picture.atoms += object.molecule->atomCount();
-    picture.bonds += object.molecule->bonds.size();
+    if (object.molecule.get() == counted) continue;
+    counted = object.molecule.get();
+    picture.atoms += counted->atomCount();
+    picture.bonds += counted->bonds.size();
   }
   const ImageFileOptions imageOptions = imageOptionsFor(file, output, scene);
   const std::unique_ptr<ImageFile> image = ImageFile::create(output, imageOptions);
@@ -266,6 +317,7 @@ void RenderRun::drawPicture(const std::string& file, const std::string& output, 
   picture.spheres = primitives->spheres.size();
   picture.cylinders = primitives->cylinders.size();
   picture.ellipsoids = primitives->ellipsoids.size();
+  for (const MetaballField& field : primitives->surfaces) picture.metaballs += field.balls.size();
 
   const View view = makeView(scene.camera, options_.size, primitives->bounds());
   RenderSettings settings;
@@ -281,6 +333,7 @@ void RenderRun::drawPicture(const std::string& file, const std::string& output, 
   settings.lines = options_.lines;
   settings.depthUnsharp = options_.depthUnsharp;
   settings.fog = options_.fog;
+  settings.surface = options_.surface;
   progress_.start(fmt::format("{} -> {}", file, output));
   Renderer& draw = renderer();
   draw.setPrimitives(std::move(primitives));
@@ -298,9 +351,6 @@ void RenderRun::drawPicture(const std::string& file, const std::string& output, 
 ImageFileOptions RenderRun::imageOptionsFor(const std::string& file, const std::string& output,
                                             const Scene& scene) const {
   constexpr std::size_t kExactInFloat = std::size_t{1} << 24;
-  std::size_t ids = 0;
-  for (const SceneObject& object : scene.objects)
-    ids += object.molecule->atomCount() * object.placements.size();
   ImageFileOptions image;
   image.size = options_.size;
   image.format = imageTypeOf(output) == ImageType::exr ? PixelFormat::rgbaFloat
@@ -308,7 +358,7 @@ ImageFileOptions RenderRun::imageOptionsFor(const std::string& file, const std::
                                                        : PixelFormat::rgba8;
   image.alpha = options_.background.transparent;
   image.layers = options_.layers;
-  image.wideIds = ids > kExactInFloat;
+  image.wideIds = countIds(scene) > kExactInFloat;
   image.dpi = options_.dpi;
   // The names of folders and of the output are left out: they say nothing about the picture, and the same
   // picture should be the same bytes wherever it is made.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
 #include <utility>
 
@@ -21,7 +22,8 @@ void explainPictures(const RunReport& report, std::string& text) {
     fmt::format_to(std::back_inserter(text), "{} -> {}: {} atoms, {} bonds; {} spheres, {} cylinders{}\n",
                    picture.input, picture.output, picture.atoms, picture.bonds, picture.spheres,
                    picture.cylinders,
-                   picture.ellipsoids > 0 ? fmt::format(", {} ellipsoids", picture.ellipsoids) : "");
+                   (picture.ellipsoids > 0 ? fmt::format(", {} ellipsoids", picture.ellipsoids) : "") +
+                       (picture.metaballs > 0 ? fmt::format(", {} metaballs", picture.metaballs) : ""));
   fmt::format_to(std::back_inserter(text), "{}x{} pixels, {} samples each, {} tile{}\n", report.size.width,
                  report.size.height, report.samples, report.render.tiles,
                  report.render.tiles == 1 ? "" : "s");
@@ -38,6 +40,21 @@ void explainPasses(const RenderStats& render, std::string& text) {
   for (const OmissionStats& omission : render.omissions)
     fmt::format_to(std::back_inserter(text), "  {:<28}{}\n", omission.what, omission.reason);
   if (render.omissions.empty()) text += "  nothing\n";
+}
+
+void explainSurfaces(const std::vector<SurfaceStats>& surfaces, std::string& text) {
+  for (const SurfaceStats& s : surfaces) {
+    const double pixels = std::max(1.0, static_cast<double>(s.pixels));
+    fmt::format_to(std::back_inserter(text),
+                   "\nSurface by {}: {} rays, {:.2f} pieces and {:.2f} iterations a ray (at most {})\n",
+                   s.method, s.pixels, static_cast<double>(s.pieces) / pixels,
+                   static_cast<double>(s.iterations) / pixels, s.mostIterations);
+    fmt::format_to(std::back_inserter(text),
+                   "  {} lists that were too short and done again, {} grazing rays, {} not converged\n",
+                   s.overflow, s.grazing, s.notConverged);
+    for (const auto& [name, value] : s.details)
+      fmt::format_to(std::back_inserter(text), "  {:<28}{:>13}\n", name, value);
+  }
 }
 
 void explainResources(const char* title, const std::vector<ResourceStats>& list, std::string& text) {
@@ -75,6 +92,7 @@ std::string explanationOf(const RunReport& report) {
   std::string text;
   explainPictures(report, text);
   explainPasses(report.render, text);
+  explainSurfaces(report.render.surfaces, text);
   fmt::format_to(std::back_inserter(text), "\nPrograms: {}\n", report.render.programs.size());
   for (const std::string& program : report.render.programs) text += "  " + program + "\n";
   explainResources("Buffers", report.render.buffers, text);

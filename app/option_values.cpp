@@ -228,6 +228,44 @@ Orientation parseOrientation(std::string_view option, std::string_view value) {
   return {Orientation::Kind::quaternion, 2, quaternion / length};
 }
 
+Kernel parseKernel(std::string_view option, std::string_view value) {
+  const std::string word = folded(value);
+  if (word == "sextic") return {KernelShape::sextic};
+  if (word == "quartic") return {KernelShape::quartic};
+  const std::optional<int> exponent =
+      word.starts_with("power:") ? numberFrom<int>(std::string_view(word).substr(6)) : std::nullopt;
+  if (!exponent || *exponent < kLeastKernelExponent || *exponent > kMostKernelExponent)
+    throwBadValue(option, value,
+                  fmt::format("sextic, quartic or power:N with N from {} to {}", kLeastKernelExponent,
+                              kMostKernelExponent));
+  return {KernelShape::power, *exponent};
+}
+
+Representation parseRepresentation(std::string_view option, std::string_view value) {
+  return parseChoice<Representation>(option, value,
+                                     {{"spacefill", Representation::spacefill},
+                                      {"ball_and_stick", Representation::ballAndStick},
+                                      {"licorice", Representation::licorice},
+                                      {"ellipsoids", Representation::ellipsoids},
+                                      {"surface", Representation::surface}});
+}
+
+std::pair<std::string, double> parseSurfaceOption(std::string_view option, std::string_view value) {
+  const std::size_t equals = value.find('=');
+  const std::optional<double> number =
+      equals == std::string_view::npos ? std::nullopt : numberFrom<double>(value.substr(equals + 1));
+  if (!number || !std::isfinite(*number) || equals == 0)
+    throwBadValue(option, value, "NAME=NUMBER, as in tolerance=0.0001");
+  return {std::string(value.substr(0, equals)), *number};
+}
+
+ShownApart parseShown(std::string_view option, std::string_view value) {
+  const std::size_t equals = value.rfind('=');
+  if (equals == std::string_view::npos || equals == 0)
+    throwBadValue(option, value, "CID=REPRESENTATION, as in '(HEM)=licorice'");
+  return {std::string(value.substr(0, equals)), parseRepresentation(option, value.substr(equals + 1))};
+}
+
 void parseAltloc(std::string_view option, std::string_view value, StructureOptions& options) {
   const std::string word = folded(value);
   if (word == "first") {

@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "core/image.h"
 #include "core/render_settings.h"
@@ -56,6 +57,21 @@ void parseUnsharpRadius(std::string_view option, std::string_view value, DepthUn
 Rgb parseColor(std::string_view option, std::string_view value);
 Background parseBackground(std::string_view option, std::string_view value);
 Orientation parseOrientation(std::string_view option, std::string_view value);
+
+/// sextic, quartic, or power:N with N an exponent that is allowed.
+Kernel parseKernel(std::string_view option, std::string_view value);
+Representation parseRepresentation(std::string_view option, std::string_view value);
+
+/// NAME=VALUE with a finite number: a surface method's parameter.
+std::pair<std::string, double> parseSurfaceOption(std::string_view option, std::string_view value);
+
+/// Atoms that are drawn in a way of their own.
+struct ShownApart {
+  std::string cid;
+  Representation representation;
+};
+/// CID=REPRESENTATION.
+ShownApart parseShown(std::string_view option, std::string_view value);
 
 /// "first", "all" or a letter or digit.
 void parseAltloc(std::string_view option, std::string_view value, StructureOptions& options);

@@ -1,5 +1,7 @@
 #include "app/render_options.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <functional>
@@ -12,6 +14,7 @@
 #include "core/render_settings.h"
 #include "io/image_writer.h"
 #include "io/output_file.h"
+#include "render/surface_method.h"
 
 namespace meniscus {
 namespace {
@@ -54,6 +57,20 @@ class OptionGroup {
         ->group(title_)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   }
+  /// An option that may be given several times; `set` gets each value.
+  void values(const std::string& names, const std::string& form, const std::string& help, Setter set) {
+    const std::string option = longName(names);
+    app_.add_option_function<std::vector<std::string>>(
+            names,
+            [option, set](const std::vector<std::string>& texts) {
+              for (const std::string& text : texts) set(option, text);
+            },
+            help)
+        ->type_name(form)
+        ->group(title_)
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  }
   void flag(const std::string& names, const std::string& help, bool& target) {
     app_.add_flag(names, target, help)->group(title_)->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   }
@@ -93,20 +110,29 @@ void addOutputOptions(CLI::App& app, RenderOptions& o) {
               [&o](auto& n, auto& v) { o.dpi = parseNumber(n, v, 1, 100000, "pixels per inch"); });
 }
 
+// Methods and their parameters, a line each.
+std::string surfaceMethodHelp() {
+  std::string help = "How it is computed; all draw the same surface [auto]";
+  for (const SurfaceMethodInfo& method : surfaceMethods()) {
+    help += fmt::format("\n{}: {}", method.name, method.summary);
+    for (const SurfaceParameter& p : method.parameters)
+      help += fmt::format("\n  {}={}: {}", p.name, p.value, p.help);
+  }
+  return help;
+}
+
 void addLookOptions(CLI::App& app, RenderOptions& o) {
   OptionGroup group(app, "Look");
   group.value("--representation", "NAME",
-              "spacefill (van der Waals spheres), ball_and_stick, licorice\n"
-              "or ellipsoids (atomic displacements, as ORTEP draws them)\n"
+              "spacefill (van der Waals spheres), ball_and_stick, licorice,\n"
+              "ellipsoids (atomic displacements, as ORTEP draws them) or\n"
+              "surface (a smooth skin over all atoms)\n"
               "[spacefill: it shows any molecule, of any size]",
-              [&o](auto& n, auto& v) {
-                o.representation =
-                    parseChoice<Representation>(n, v,
-                                                {{"spacefill", Representation::spacefill},
-                                                 {"ball_and_stick", Representation::ballAndStick},
-                                                 {"licorice", Representation::licorice},
-                                                 {"ellipsoids", Representation::ellipsoids}});
-              });
+              [&o](auto& n, auto& v) { o.representation = parseRepresentation(n, v); });
+  group.values("--show", "CID=NAME",
+               "Draw these atoms (as --select) in a way of their own, for\n"
+               "example '(HEM)=licorice'; may be repeated",
+               [&o](auto& n, auto& v) { o.shown.push_back(parseShown(n, v)); });
   group.value("--color,--colour", "SCHEME",
               "element (Jmol), chain, residue (chemical kind), bfactor,\n"
               "plddt (AlphaFold's 90/70/50), rainbow (along each chain)\nor one colour '#RRGGBB' [element]",
@@ -133,6 +159,32 @@ void addLookOptions(CLI::App& app, RenderOptions& o) {
   group.value("--probability", "P",
               "How likely an atom is inside its displacement ellipsoid,\nbetween 0 and 1 [0.5]",
               [&o](auto& n, auto& v) { o.probability = parseProbability(n, v); });
+}
+
+void addSurfaceOptions(CLI::App& app, RenderOptions& o) {
+  OptionGroup group(app, "Surface");
+  group.value("--blend", "S",
+              "How smooth: an atom's reach as a multiple of its van der\n"
+              "Waals radius, 1.05 to 10 [2]",
+              [&o](auto& n, auto& v) { o.surfaceShape.blend = parseNumber(n, v, 1.05, 10); });
+  group.value("--kernel", "NAME",
+              "sextic (Wyvill), quartic (POV-Ray's blob) or power:N, N from\n"
+              "2 to 16 [sextic]",
+              [&o](auto& n, auto& v) { o.surfaceShape.kernel = parseKernel(n, v); });
+  group.value("--level", "T",
+              "The field's value on the surface; smaller is thicker\n"
+              "[a lone atom shows its van der Waals radius]",
+              [&o](auto& n, auto& v) { o.surfaceShape.level = parseNumber(n, v, 1e-6, 1e6); });
+  group.value("--surface-method", "NAME", surfaceMethodHelp(), [&o](auto& n, auto& v) {
+    std::vector<std::string_view> names{"auto"};
+    for (const SurfaceMethodInfo& method : surfaceMethods()) names.push_back(method.name);
+    o.surface.method = names[parseWord(n, v, names)];
+  });
+  group.values("--surface-option", "NAME=VALUE", "Something that the method can be told; may be repeated",
+               [&o](auto& n, auto& v) {
+                 const auto [name, value] = parseSurfaceOption(n, v);
+                 o.surface.parameters[name] = value;
+               });
 }
 
 // What the styles stand for, a line each.
@@ -302,6 +354,8 @@ void requireConsistent(const CLI::App& app, RenderOptions& o) {
   if (std::filesystem::is_directory(o.output)) requireWritable(o.output);  // says that it is a folder
   if (!(o.fog.start < o.fog.end))
     throw UsageError("--fog-start: must be less than --fog-end (they are 0.2 and 1 unless given)");
+  if (o.surface.parameters.size() > 0 || o.surface.method != "auto")
+    surfaceParametersFor(surfaceMethodFor(o.surface), o.surface);  // throws if it has no such parameter
   const ImageType type = imageTypeOf(o.output);
   if (type == ImageType::exr && app.count("--depth") > 0)
     throw UsageError(
@@ -319,8 +373,13 @@ std::string pictureOptionsOf(const CLI::App& app) {
     const std::string& name = option->get_lnames().front();
     if (std::find(kNotForThePicture.begin(), kNotForThePicture.end(), name) != kNotForThePicture.end())
       continue;
-    text += " --" + name;
-    if (option->get_items_expected_max() > 0) text += " " + shellQuoted(option->results().back());
+    if (option->get_items_expected_max() == 0) {
+      text += " --" + name;
+    } else if (option->get_multi_option_policy() == CLI::MultiOptionPolicy::TakeAll) {
+      for (const std::string& value : option->results()) text += " --" + name + " " + shellQuoted(value);
+    } else {
+      text += " --" + name + " " + shellQuoted(option->results().back());
+    }
   }
   return text;
 }
@@ -337,6 +396,7 @@ std::optional<RenderOptions> parseRenderOptions(const std::vector<std::string>& 
       ->type_name("FILE...");
   addOutputOptions(*app, options);
   addLookOptions(*app, options);
+  addSurfaceOptions(*app, options);
   addStyleOption(*app);
   addLightOptions(*app, options);
   addLineOptions(*app, options);

@@ -28,6 +28,9 @@ struct RenderOptions {
   RadiusSet radii = RadiusSet::bondi;
   std::optional<double> ballScale, stickRadius;  ///< nothing = the representation's own
   double probability = 0.5;                      ///< of displacement ellipsoids, see SceneObject
+  SurfaceShape surfaceShape;
+  SurfaceSettings surface;
+  std::vector<ShownApart> shown;  ///< drawn in another way; of several that name an atom the last has it
 
   Orientation orientation;
   glm::dvec3 rotationDeg{0.0};

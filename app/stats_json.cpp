@@ -17,6 +17,20 @@ Json resources(const std::vector<ResourceStats>& list) {
   return array;
 }
 
+Json surfaceStats(const SurfaceStats& s) {
+  Json details = Json::object();
+  for (const auto& [name, value] : s.details) details[name] = value;
+  return {{"method", s.method},
+          {"pixels", s.pixels},
+          {"pieces", s.pieces},
+          {"iterations", s.iterations},
+          {"mostIterations", s.mostIterations},
+          {"overflow", s.overflow},
+          {"grazing", s.grazing},
+          {"notConverged", s.notConverged},
+          {"details", details}};
+}
+
 Json secondsOf(const RunReport& report) {
   return {{"parse", report.parseSeconds},
           {"bonds", report.bondsSeconds},
@@ -48,7 +62,8 @@ std::string statsAsJson(const RunReport& report) {
                                 {"bonds", picture.bonds},
                                 {"spheres", picture.spheres},
                                 {"cylinders", picture.cylinders},
-                                {"ellipsoids", picture.ellipsoids}});
+                                {"ellipsoids", picture.ellipsoids},
+                                {"metaballs", picture.metaballs}});
   json["failures"] = report.failures;
   json["seconds"] = secondsOf(report);
   json["cpuSeconds"] = report.cpuSeconds;
@@ -60,6 +75,9 @@ std::string statsAsJson(const RunReport& report) {
   json["omissions"] = Json::array();
   for (const OmissionStats& omission : report.render.omissions)
     json["omissions"].push_back({{"what", omission.what}, {"reason", omission.reason}});
+  json["surfaces"] = Json::array();
+  for (const SurfaceStats& surface : report.render.surfaces)
+    json["surfaces"].push_back(surfaceStats(surface));
   json["programs"] = report.render.programs;
   json["buffers"] = resources(report.render.buffers);
   json["textures"] = resources(report.render.textures);

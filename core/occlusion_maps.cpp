@@ -30,13 +30,32 @@ double sobol2(std::uint32_t i) {
   return bits * 0x1p-32;
 }
 
+// What a ball alone holds inside stands for its part of the surface: it never reaches out of it, so that a
+// surface does not occlude itself where it is convex. What negative balls cut away counts as if it were
+// there.
+std::vector<SpherePrimitive> coresOf(const std::vector<MetaballField>& fields) {
+  std::vector<SpherePrimitive> cores;
+  for (const MetaballField& field : fields) {
+    float coefficient = 0, share = 0;  // of the ball before: most are alike
+    for (const Metaball& ball : field.balls) {
+      if (ball.coefficient != coefficient) {
+        coefficient = ball.coefficient;
+        share = static_cast<float>(coreShare(field.kernel, field.level, static_cast<double>(coefficient)));
+      }
+      if (share > 0) cores.push_back({ball.center, ball.support * share, ball.color, ball.id});
+    }
+  }
+  return cores;
+}
+
 // How far a point of a primitive can lie from its centre.
-double reachOf(const Primitives& primitives) {
+double reachOf(const Primitives& primitives, const std::vector<SpherePrimitive>& cores) {
   float reach = 0;
   for (const SpherePrimitive& s : primitives.spheres) reach = std::max(reach, s.radius);
   for (const CylinderPrimitive& c : primitives.cylinders)
     reach = std::max(reach, 0.5f * glm::length(c.b - c.a) + c.radius);
   for (const EllipsoidPrimitive& e : primitives.ellipsoids) reach = std::max(reach, glm::length(e.axisA));
+  for (const SpherePrimitive& s : cores) reach = std::max(reach, s.radius);
   return static_cast<double>(reach);
 }
 
@@ -155,11 +174,12 @@ class Canvas {
 };
 
 // Chooses views and sizes; nothing is drawn.
-OcclusionMaps layOut(const Primitives& primitives, const View& camera, const OcclusionSettings& settings) {
+OcclusionMaps layOut(const Primitives& primitives, const std::vector<SpherePrimitive>& cores,
+                     const View& camera, const OcclusionSettings& settings) {
   const BoundingSphere bounds = primitives.bounds();
   const std::vector<glm::dvec3> directions = occlusionDirections(settings.directions);
   OcclusionMaps all;
-  all.reach = reachOf(primitives);
+  all.reach = reachOf(primitives, cores);
   all.texelSize = std::max({settings.texelSize, pixelFootprint(camera, bounds), bounds.radius * 1e-6});
   for (;;) {
     double span = 0, texels = 0;
@@ -208,7 +228,8 @@ std::vector<glm::dvec3> occlusionDirections(int count) {
 
 OcclusionMaps drawOcclusionMaps(const Primitives& primitives, const View& camera,
                                 const OcclusionSettings& settings) {
-  OcclusionMaps all = layOut(primitives, camera, settings);
+  const std::vector<SpherePrimitive> cores = coresOf(primitives.surfaces);
+  OcclusionMaps all = layOut(primitives, cores, camera, settings);
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {
     for (std::size_t i = next++; i < all.maps.size(); i = next++) {
@@ -216,6 +237,7 @@ OcclusionMaps drawOcclusionMaps(const Primitives& primitives, const View& camera
       for (const SpherePrimitive& s : primitives.spheres) canvas.draw(s);
       for (const CylinderPrimitive& c : primitives.cylinders) canvas.draw(c);
       for (const EllipsoidPrimitive& e : primitives.ellipsoids) canvas.draw(e);
+      for (const SpherePrimitive& s : cores) canvas.draw(s);
       canvas.pack(all.texels.data() + all.maps[i].first);
     }
   };

@@ -32,6 +32,31 @@ TEST(ParseNumber, takesNumbersInRange) {
                   [](auto& v) { parseNumber("--name", v, 1, 170, "degrees"); });
 }
 
+TEST(ParseKernel, takesNamesAndExponents) {
+  EXPECT_EQ(parseKernel("--name", "Sextic"), (Kernel{KernelShape::sextic}));
+  EXPECT_EQ(parseKernel("--name", "quartic"), (Kernel{KernelShape::quartic}));
+  EXPECT_EQ(parseKernel("--name", "power:2"), (Kernel{KernelShape::power, 2}));
+  EXPECT_EQ(parseKernel("--name", "power:16"), (Kernel{KernelShape::power, 16}));
+  for (const char* value : {"", "cubic", "power", "power:", "power:1", "power:17", "power:2.5", "power:x"})
+    expectRefused(value, "power:N with N from 2 to 16", [](auto& v) { parseKernel("--name", v); });
+}
+
+TEST(ParseSurfaceOption, takesANameAndANumber) {
+  EXPECT_EQ(parseSurfaceOption("--name", "tolerance=1e-4"),
+            (std::pair<std::string, double>{"tolerance", 1e-4}));
+  for (const char* value : {"", "tolerance", "=1", "tolerance=", "tolerance=x", "tolerance=nan", "a=1=2"})
+    expectRefused(value, "NAME=NUMBER", [](auto& v) { parseSurfaceOption("--name", v); });
+}
+
+TEST(ParseShown, takesASelectionAndARepresentation) {
+  const ShownApart shown = parseShown("--name", "(HEM)=ball-and-stick");
+  EXPECT_EQ(shown.cid, "(HEM)");
+  EXPECT_EQ(shown.representation, Representation::ballAndStick);
+  for (const char* value : {"", "(HEM)", "=licorice"})
+    expectRefused(value, "CID=REPRESENTATION", [](auto& v) { parseShown("--name", v); });
+  EXPECT_THROW(parseShown("--name", "(HEM)=cartoonish"), UsageError);
+}
+
 TEST(ParseInteger, takesWholeNumbersInRange) {
   EXPECT_EQ(parseInteger("--name", "256", 1, 256), 256);
   for (const char* value : {"", "0", "257", "1.5", "1e2", "99999999999999999999"})

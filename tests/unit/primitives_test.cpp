@@ -222,6 +222,66 @@ TEST(FitSpheres, OfSomeAtomsTakeTheseAtomsOfEveryPlacement) {
   EXPECT_EQ(fit[2].center, m->positions[1] + glm::dvec3(0, 0, 50));
 }
 
+TEST(BuildPrimitives, ASurfaceIsOneFieldOfAllPlacements) {
+  const auto m = stringOfAtoms(4);
+  SceneObject object = objectOf(m, Representation::surface);
+  object.placements.push_back({glm::translate(glm::dmat4(1.0), {0.0, 0.0, 20.0}), {{1, 2}}});
+  object.surface.blend = 1.5;
+  object.surface.kernel = {KernelShape::power, 4};
+  const Primitives p = build({object});
+  EXPECT_TRUE(p.spheres.empty());
+  EXPECT_TRUE(p.cylinders.empty());
+  EXPECT_FALSE(p.empty());
+  ASSERT_EQ(p.surfaces.size(), 1u);
+  const MetaballField& field = p.surfaces[0];
+  EXPECT_EQ(field.kernel, (Kernel{KernelShape::power, 4}));
+  EXPECT_EQ(field.level, levelOfBlend(field.kernel, 1.5));
+  ASSERT_EQ(field.balls.size(), 6u);
+  const std::vector<Rgb> colors = colorAtoms(*m, {});
+  const std::uint32_t atoms[] = {0, 1, 2, 3, 1, 2};
+  for (std::size_t i = 0; i < 6; ++i) {
+    const Metaball& ball = field.balls[i];
+    const float radius = vanDerWaalsRadius(m->elements[atoms[i]], RadiusSet::bondi);
+    EXPECT_FLOAT_EQ(ball.support, radius * 1.5f);
+    EXPECT_EQ(ball.coefficient, 1.0f);
+    EXPECT_EQ(ball.color, colors[atoms[i]]);
+    EXPECT_EQ(ball.id, i < 4 ? i + 1 : 5 + atoms[i]);
+    const glm::dvec3 place = m->positions[atoms[i]] + glm::dvec3(0, 0, i < 4 ? 0 : 20);
+    EXPECT_LT(glm::length(world(p, ball.center) - place), 1e-5);
+    EXPECT_LE(glm::length(place - p.bounds().center) + static_cast<double>(ball.support),
+              p.bounds().radius + 1e-4);
+  }
+  object.surface.level = 0.25;
+  EXPECT_EQ(build({object}).surfaces[0].level, 0.25);
+  EXPECT_FALSE(needsBonds(Representation::surface));
+  EXPECT_TRUE(build({objectOf(std::make_shared<Molecule>(), Representation::surface)}).empty());
+}
+
+TEST(BuildPrimitives, ObjectsOfOneMoleculeShareItsIds) {
+  const auto m = stringOfAtoms(6);
+  SceneObject surface = objectOf(m, Representation::surface), sticks = objectOf(m, Representation::licorice);
+  surface.atoms = {0, 1, 2, 5};
+  sticks.atoms = {3, 4};
+  Scene scene;
+  scene.objects = {surface, sticks, objectOf(stringOfAtoms(2), Representation::spacefill)};
+  const Primitives p = buildPrimitives(scene, LineGroups::residues);
+  EXPECT_EQ(countIds(scene), 8u);
+  EXPECT_EQ(p.groups.size(), 9u);
+  ASSERT_EQ(p.surfaces.size(), 1u);
+  std::vector<std::uint32_t> ids;
+  for (const Metaball& ball : p.surfaces[0].balls) ids.push_back(ball.id);
+  EXPECT_EQ(ids, (std::vector<std::uint32_t>{1, 2, 3, 6}));
+  ASSERT_EQ(p.spheres.size(), 4u);
+  EXPECT_EQ(p.spheres[0].id, 4u);
+  EXPECT_EQ(p.spheres[1].id, 5u);
+  EXPECT_EQ(p.spheres[2].id, 7u) << "another molecule";
+  ASSERT_EQ(p.cylinders.size(), 1u) << "the bonds to what is drawn otherwise are not drawn";
+  EXPECT_EQ(fitSpheres(sticks).size(), 2u);
+  sticks.placements.push_back(sticks.placements.front());
+  scene.objects = {surface, sticks};
+  EXPECT_EQ(countIds(scene), 18u) << "other placements are other atoms";
+}
+
 TEST(BuildPrimitives, GroupsNumberResiduesOrChainsOfEveryPlacement) {
   const auto m = stringOfAtoms(3);
   SceneObject object = objectOf(m, Representation::spacefill);

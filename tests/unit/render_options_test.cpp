@@ -126,6 +126,24 @@ TEST(RenderOptions, takeEveryOption) {
   EXPECT_TRUE(options.quiet);
 }
 
+TEST(RenderOptions, takeWhatASurfaceCanBeTold) {
+  EXPECT_EQ(parse({}).surface, SurfaceSettings{});
+  EXPECT_EQ(parse({}).surfaceShape.blend, 2);
+  EXPECT_FALSE(parse({}).surfaceShape.level);
+  const RenderOptions options =
+      parse({"--representation", "surface", "--blend", "1.5", "--kernel", "power:4", "--level", "0.3",
+             "--show", "(HEM)=licorice", "--show", "//A/1=spacefill"});
+  EXPECT_EQ(options.representation, Representation::surface);
+  EXPECT_EQ(options.surfaceShape.blend, 1.5);
+  EXPECT_EQ(options.surfaceShape.kernel, (Kernel{KernelShape::power, 4}));
+  EXPECT_EQ(options.surfaceShape.level, 0.3);
+  ASSERT_EQ(options.shown.size(), 2u);
+  EXPECT_EQ(options.shown[1].cid, "//A/1");
+  EXPECT_EQ(options.pictureOptions,
+            " --representation surface --show '(HEM)=licorice' --show //A/1=spacefill --blend 1.5 --kernel "
+            "power:4 --level 0.3");
+}
+
 TEST(RenderOptions, theLastOfTwoCounts) {
   EXPECT_EQ(parse({"--zoom", "2", "--zoom", "3"}).zoom, 3);
 }
