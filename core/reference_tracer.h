@@ -26,18 +26,22 @@ struct ReferenceOptions {
 /// A pixel is `grazing` if one of the four moved rays decides differently: a hit against a miss, an entry
 /// against an exit, or a hit on another sheet. Another sheet is what lies farther off than one smooth surface
 /// allows: |t1 - t0| > (1 + 3 min(tan a0, tan a1)) e, where e is the distance between the two rays at the hit
-/// and a the angle between ray and normal. (Across a fold that two rays straddle not, |t1 - t0| is the
-/// harmonic mean of the tangents times e, at most twice the smaller; a face seen at up to 45 degrees stays
-/// below e.) It is also grazing if the sign of F on its own ray is within rounding of zero before the hit.
+/// and a the angle between ray and normal. (Beside a smooth fold |t1 - t0| is the harmonic mean
+/// of the tangents times e, at most twice the smaller; a face seen at up to 45 degrees stays below e.) It is
+/// also grazing if the sign of F on its own ray is within rounding of zero before the hit.
 struct ReferenceImage {
-  HitImage hits;                 ///< normals towards the viewer; id: ball with the largest share q f > 0
-  std::vector<double> distance;  ///< hits.distance before it was rounded
-  std::vector<std::uint32_t>
-      pieces;  ///< polynomial pieces, between entries and exits of supports, up to the hit
+  /// Normals towards the viewer; id of the ball with the largest share q f > 0.
+  HitImage hits;
+  /// hits.distance before it was rounded.
+  std::vector<double> distance;
+  /// Polynomial pieces, between entries and exits of supports that the ray meets, up to that of the hit. One
+  /// more or less where a boundary lies within grazingShift of the hit.
+  std::vector<std::uint32_t> pieces;
   std::vector<std::uint8_t> grazing;  ///< 1 or 0
-  std::size_t undecidedPixels = 0;    ///< whose own ray comes so near to a double root that rounding decides
-  std::size_t shiftedPixels =
-      0;  ///< whose four moved rays were cast; for the others a proof made it needless
+  /// Pixels whose own ray comes so near to a double root that rounding decides.
+  std::size_t undecidedPixels = 0;
+  /// Pixels whose four moved rays were cast; for the others a proof made it needless.
+  std::size_t shiftedPixels = 0;
 };
 
 /// `origin`: Primitives::origin, to which the centres are relative [Å]. Throws InputError as requireValid().

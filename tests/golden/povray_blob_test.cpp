@@ -98,11 +98,13 @@ HitImage povHits(const MetaballField& field, const glm::dvec3& origin, const Vie
 void expectSame(const MetaballField& field, const glm::dvec3& origin, const View& view, const char* name) {
   const ReferenceImage truth = traceReference(field, origin, view);
   const HitErrors errors = compareHits(povHits(field, origin, view), truth);
+  testing::Test::RecordProperty(fmt::format("{}_p99", name), fmt::format("{}", errors.distanceP99));
+  testing::Test::RecordProperty(fmt::format("{}_largest", name), fmt::format("{}", errors.largestDistance));
   EXPECT_EQ(errors.missed, 0u) << name;
   EXPECT_EQ(errors.falseHits, 0u) << name;
   EXPECT_GT(errors.compared, 2000u) << name;
   // The fine channel's step, a float32, and little more. POV-Ray's own roots are worse where a ray almost
-  // grazes; measured: 1.1e-4 A.
+  // grazes; measured: 5.3e-5 A.
   const double step = (view.nearZ - view.farZ) / kSteps / 65535, single = 0x1p-23 * view.nearZ;
   EXPECT_LT(errors.distanceP99, 2 * step + 3 * single) << name;
   EXPECT_LT(errors.largestDistance, 1e-3) << name;
