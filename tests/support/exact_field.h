@@ -1,6 +1,7 @@
 #pragma once
 // Metaballs along a ray in long double, written straight from the definition, and small views of them.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
