@@ -54,14 +54,15 @@ float drawnRadius(const SceneObject& object, const Ellipsoids& ellipsoids, std::
   return vdw;
 }
 
-// Where the fields of several atoms meet, the surface lies outside their spheres, by this share of the radius
-// at most in proteins at the default blend (measured), and never outside the support.
-constexpr double kSurfaceBulge = 0.25;
-
+// Where the fields of several atoms meet, the surface lies outside their spheres. Measured along rays over
+// proteins, DNA and C60: on average 1.02 to 1.04 radii from the nearest centre at blend 1.3, 1.21 to 1.35 at
+// 2, 1.8 to 2.04 at 3, 4.03 to 4.46 at 6. A picture must hold the outermost part, and no lone atom reaches so
+// far.
 double fitRadius(const SceneObject& object, const Ellipsoids& ellipsoids, std::size_t atom) {
   const double radius = static_cast<double>(drawnRadius(object, ellipsoids, atom));
   if (object.representation != Representation::surface) return radius;
-  return radius * std::min(1 + kSurfaceBulge, object.surface.blend);
+  const double over = object.surface.blend - 1;
+  return radius * std::min(1 + (0.4 + 0.08 * over) * over, object.surface.blend);
 }
 
 float bondRadius(const SceneObject& object) {
