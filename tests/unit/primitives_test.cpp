@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/atom_colors.h"
+#include "core/reference_tracer.h"
 #include "tests/support/random.h"
 
 namespace meniscus {
@@ -280,6 +281,38 @@ TEST(BuildPrimitives, ObjectsOfOneMoleculeShareItsIds) {
   sticks.placements.push_back(sticks.placements.front());
   scene.objects = {surface, sticks};
   EXPECT_EQ(countIds(scene), 18u) << "other placements are other atoms";
+}
+
+TEST(FitSpheres, HoldASurfaceThatBulges) {
+  constexpr int kSide = 48;
+  auto m = std::make_shared<Molecule>();
+  Random random(5);
+  for (std::uint32_t i = 0; i < 40; ++i) {
+    m->positions.push_back(random.inBox(4));
+    m->elements.push_back(6);
+    m->residueOf.push_back(0);
+  }
+  m->bFactors.resize(40);
+  Residue residue;
+  residue.atoms = {0, 40};
+  m->residues.push_back(residue);
+  m->chains.push_back({"A", {0, 1}});
+  for (const double blend : {1.1, 2.0, 3.0, 6.0}) {
+    SceneObject object = objectOf(m, Representation::surface);
+    object.surface.blend = blend;
+    const Primitives p = build({object});
+    const View view = makeView(fitted({}, {kSide, kSide}, fitSpheres(object)), {kSide, kSide}, p.bounds());
+    const std::vector<double> distance =
+        traceReference(p.surfaces, p.origin, view, {.grazing = false}).distance;
+    std::size_t hits = 0;
+    for (std::size_t i = 0; i < distance.size(); ++i) {
+      if (std::isinf(distance[i])) continue;
+      ++hits;
+      const std::size_t x = i % kSide, y = i / kSide;
+      EXPECT_TRUE(x > 0 && y > 0 && x + 1 < kSide && y + 1 < kSide) << "blend " << blend;
+    }
+    EXPECT_GT(hits, distance.size() / 4) << "blend " << blend;
+  }
 }
 
 TEST(BuildPrimitives, GroupsNumberResiduesOrChainsOfEveryPlacement) {
