@@ -1,6 +1,7 @@
 #include "bench/bench_scenes.h"
 
 #include <algorithm>
+#include <filesystem>
 
 #include "core/bonds.h"
 #include "core/camera_fit.h"
@@ -37,7 +38,7 @@ BenchScene loadScene(const SceneSource& source, ImageSize size) {
   options.waters = Waters::automatic;
   Logger logger;
   StructureFile structure =
-      readStructure(std::string(MENISCUS_MOLECULES) + "/" + source.file, options, logger);
+      readStructure(std::filesystem::path(MENISCUS_MOLECULES) / source.file, options, logger);
   Molecule& molecule = structure.models.front();
   if (needsBonds(source.representation)) addMissingBonds(molecule, logger);
 

@@ -15,7 +15,7 @@ namespace meniscus {
 namespace {
 
 // Of all maps together: 128 MiB.
-constexpr double kMaxTexels = 32.0 * (1 << 20);
+constexpr double kMaxTexels = 8.0 * (1 << 20);
 // More would only cost memory: the slabs of a radius of 8 Å in a scene of 150 Å.
 constexpr int kMaxSlabs = 32;
 constexpr int kMaxMapSize = 4096;
@@ -134,11 +134,17 @@ class Canvas {
     }
   }
 
-  // Each height beside its right neighbour.
-  void pack(std::uint32_t* out) const {
-    for (std::size_t i = 0; i < heights_.size(); ++i) {
-      const std::uint32_t right = i + 1 < heights_.size() ? heights_[i + 1] : 0;
-      out[i] = heights_[i] | right << 16;
+  void pack(OcclusionTexel* out) const {
+    const std::size_t area = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+    for (int slab = 0; slab < slabs_; slab += 2) {
+      for (int k = 0; k < kSlabsPerTexel; ++k) {
+        if (slab + k >= slabs_) continue;  // empty
+        const std::uint16_t* heights = heights_.data() + static_cast<std::size_t>(slab + k) * area;
+        for (std::size_t i = 0; i + 1 < area; ++i)
+          out[i][static_cast<std::size_t>(k)] = heights[i] | std::uint32_t{heights[i + 1]} << 16;
+        out[area - 1][static_cast<std::size_t>(k)] = heights[area - 1];
+      }
+      out += area;
     }
   }
 
@@ -203,7 +209,7 @@ OcclusionMaps layOut(const Primitives& primitives, const std::vector<SpherePrimi
     for (OcclusionMap& map : all.maps) {
       map.slabs = slabs;
       map.first = static_cast<std::uint32_t>(std::min(texels, kMaxTexels));
-      texels += static_cast<double>(map.view.size.width) * map.view.size.height * slabs;
+      texels += static_cast<double>(map.view.size.width) * map.view.size.height * ((slabs + 1) / 2);
     }
     if (texels <= kMaxTexels) {
       all.texels.resize(static_cast<std::size_t>(texels));

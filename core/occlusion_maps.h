@@ -3,6 +3,7 @@
 // them. Drawn by the processor, since they are coarse and many: without a GPU each costs a fortieth of
 // drawing the scene as shaded quadrics at 1024x768 (docs/methods.md).
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -18,14 +19,18 @@ namespace meniscus {
 struct OcclusionMap {
   View view;                ///< orthographic; its z axis points from the scene to the sky
   int slabs = 1;            ///< from the far plane up
-  std::uint32_t first = 0;  ///< index of its first texel: slab by slab, row by row from the bottom
+  std::uint32_t first = 0;  ///< index of its first texel: by pairs of slabs, row by row from the bottom
 };
+
+/// The heights in a pair of slabs and in the next two: what counts for a point that lies in the first pair,
+/// or up to a slab below its middle, is in one texel. Lower 16 bits: the height in units of
+/// OcclusionMaps::step, 0 = nothing there; upper 16 bits: that of the texel to the right.
+constexpr int kSlabsPerTexel = 4;
+using OcclusionTexel = std::array<std::uint32_t, kSlabsPerTexel>;
 
 struct OcclusionMaps {
   std::vector<OcclusionMap> maps;
-  /// Lower 16 bits: the height in units of `step`, 0 = nothing there; upper 16 bits: that of the texel to the
-  /// right.
-  std::vector<std::uint32_t> texels;
+  std::vector<OcclusionTexel> texels;
   double texelSize = 0;   ///< [Å]
   double slabHeight = 0;  ///< [Å]
   double step = 0;        ///< of a height [Å]

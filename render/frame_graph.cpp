@@ -128,7 +128,7 @@ void FrameGraph::cull() {
   for (std::size_t p = passes_.size(); p-- > 0;) {
     Pass& pass = passes_[p];
     pass.live = std::any_of(pass.writes.begin(), pass.writes.end(), [&](const Attachment& a) {
-      return resources_[static_cast<std::size_t>(a.texture.index)].live;
+      return a.location != kTestedDepth && resources_[static_cast<std::size_t>(a.texture.index)].live;
     });
     if (!pass.live) continue;
     for (const TextureRef ref : pass.reads) resources_[static_cast<std::size_t>(ref.index)].live = true;
@@ -171,8 +171,9 @@ void FrameGraph::materialize(Resource& resource) {
 
 void FrameGraph::run(Pass& pass) {
   for (const TextureRef ref : pass.reads) {
-    const bool alsoWritten = std::any_of(pass.writes.begin(), pass.writes.end(),
-                                         [&](const Attachment& a) { return a.texture.index == ref.index; });
+    const bool alsoWritten = std::any_of(pass.writes.begin(), pass.writes.end(), [&](const Attachment& a) {
+      return a.texture.index == ref.index && a.location != kTestedDepth;
+    });
     if (!alsoWritten) materialize(resources_[static_cast<std::size_t>(ref.index)]);
   }
   std::vector<const gl::Texture*> colors;
@@ -184,7 +185,7 @@ void FrameGraph::run(Pass& pass) {
     if (!resource.imported && !resource.pooled) resource.pooled = pool_.acquire(resource.name, resource.desc);
     const gl::Texture* texture = resource.imported ? resource.imported : resource.pooled;
     size = texture->desc;
-    if (a.location == kDepth) {
+    if (a.location == kDepth || a.location == kTestedDepth) {
       depth = texture;
     } else {
       const auto location = static_cast<std::size_t>(a.location);
@@ -197,7 +198,7 @@ void FrameGraph::run(Pass& pass) {
   context.bindTarget();
   for (const Attachment& a : pass.writes) {
     Resource& resource = resources_[static_cast<std::size_t>(a.texture.index)];
-    if (!resource.live) continue;
+    if (!resource.live || a.location == kTestedDepth) continue;
     clearAttachment(framebuffer, resource, a.location);
     resource.written = true;
   }

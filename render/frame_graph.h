@@ -80,9 +80,10 @@ class PassContext {
 class FrameGraph {
  public:
   static constexpr int kDepth = -1;
+  static constexpr int kTestedDepth = -2;  ///< depth that is only tested: attached, but not written
   struct Attachment {
     TextureRef texture;
-    int location;  ///< fragment output location, or kDepth
+    int location;  ///< fragment output location, kDepth or kTestedDepth
   };
 
   explicit FrameGraph(TexturePool& pool) : pool_(pool) {}

@@ -236,7 +236,8 @@ void Renderer::Impl::setEffects(Frame& frame) {
     silhouetteUniforms.setGroups(primitives->groups);
   }
   frame.unsharp = unsharpKernel(unsharpSigma(settings.depthUnsharp, frame.view));
-  frame.margin = std::max(reachOf(settings.lines), reachOf(settings.depthUnsharp, frame.view));
+  frame.margin = std::max({reachOf(settings.lines), reachOf(settings.depthUnsharp, frame.view),
+                           reachOf(settings.occlusion, settings.samples)});
 }
 
 // Counted as a pass, though the processor draws them.
@@ -277,7 +278,7 @@ void Renderer::Impl::drawTile(const Frame& frame, const Tile& part, const gl::Te
   const auto setShadow = [&](int sample) {
     if (frame.shadowMap.depth)
       shadowUniforms.set(frame.settings.shadows, frame.view, frame.shadowMap, sample, samples);
-    if (frame.occlusion) occlusionBuffers.chooseDirections(sample, samples);
+    if (frame.occlusion) occlusionBuffers.chooseDirections(sample, samples, tile);
   };
   if (frame.shade.final) {
     setShadow(0);

@@ -32,6 +32,8 @@ FormatInfo infoOf(TextureFormat format) {
       return {GL_R16, GL_RED, GL_UNSIGNED_SHORT, 2};
     case TextureFormat::r32ui:
       return {GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, 4};
+    case TextureFormat::rgba32ui:
+      return {GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT, 16};
     case TextureFormat::r32f:
       return {GL_R32F, GL_RED, GL_FLOAT, 4};
     case TextureFormat::depth32f:

@@ -46,7 +46,18 @@ struct Buffer {
   void update(const void* data);
 };
 
-enum class TextureFormat : std::uint8_t { rgba8, rgba16, rgba32f, rg32f, rg16, r16, r32ui, r32f, depth32f };
+enum class TextureFormat : std::uint8_t {
+  rgba8,
+  rgba16,
+  rgba32f,
+  rg32f,
+  rg16,
+  r16,
+  r32ui,
+  rgba32ui,
+  r32f,
+  depth32f
+};
 
 int bytesPerTexel(TextureFormat format);
 

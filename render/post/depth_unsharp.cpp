@@ -82,22 +82,25 @@ TextureRef addDepthUnsharp(FrameGraph& graph, const UnsharpKernel& kernel,
   const TextureRef across = graph.create("depth blurred across", blocks, Clear::none);
   const TextureRef blurred = graph.create("depth blurred", blocks, Clear::none);
   const TextureRef difference =
-      graph.create("depth difference", {gl::TextureFormat::r32f, tile.width, tile.height}, Clear::none);
+      graph.create("depth difference", {gl::TextureFormat::r32f, tile.width, tile.height});
   const auto addStep = [&](const char* name, const char* shader, std::vector<TextureRef> reads,
-                           TextureRef write, const ShaderFlags& flags) {
-    graph.addPass(name, reads, {{write, 0}},
-                  [&uniforms, &shaders, shader, reads, flags](const PassContext& context) {
+                           TextureRef write, const ShaderFlags& flags, bool overSurface = false) {
+    std::vector<FrameGraph::Attachment> writes{{write, 0}};
+    if (overSurface) writes.push_back({gbuffer.depth, FrameGraph::kTestedDepth});
+    graph.addPass(name, reads, writes,
+                  [&uniforms, &shaders, shader, reads, flags, overSurface](const PassContext& context) {
                     for (unsigned i = 0; i < reads.size(); ++i) {
                       glBindTextureUnit(i, context.texture(reads[i]).object.name());
                     }
                     glBindBufferBase(GL_UNIFORM_BUFFER, 1, uniforms.name());
-                    drawFullscreen(shaders.program("post/fullscreen.vert", shader, flags));
+                    const unsigned program = shaders.program("post/fullscreen.vert", shader, flags);
+                    overSurface ? drawOverSurface(program) : drawFullscreen(program);
                   });
   };
   addStep("depth unsharp: blocks", "post/depth_unsharp_blocks.frag", {gbuffer.depth}, sums, {});
   addStep("depth unsharp: blur across", "post/depth_unsharp_blur.frag", {sums}, across, {});
   addStep("depth unsharp: blur up", "post/depth_unsharp_blur.frag", {across}, blurred, {"VERTICAL"});
-  addStep("depth unsharp", "post/depth_unsharp.frag", {gbuffer.depth, blurred}, difference, {});
+  addStep("depth unsharp", "post/depth_unsharp.frag", {gbuffer.depth, blurred}, difference, {}, true);
   return difference;
 }
 

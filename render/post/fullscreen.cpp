@@ -19,4 +19,13 @@ void drawFullscreen(unsigned program, bool add) {
   glDeleteVertexArrays(1, &vertexArray);
 }
 
+void drawOverSurface(unsigned program, bool add) {
+  glEnable(GL_DEPTH_TEST);
+  glDepthMask(GL_FALSE);
+  glDepthFunc(GL_LESS);  // the triangle's depth is 0, as the background's
+  drawFullscreen(program, add);
+  glDepthMask(GL_TRUE);
+  glDisable(GL_DEPTH_TEST);
+}
+
 }  // namespace meniscus

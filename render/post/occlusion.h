@@ -7,36 +7,70 @@
 // maps hold slabs, so that an occluder close by is found behind one far away, and each is compared with the
 // tangent plane.
 
+#include <functional>
+#include <glm/vec4.hpp>
+#include <vector>
+
 #include "core/occlusion_maps.h"
 #include "render/frame_graph.h"
 #include "render/gbuffer.h"
 #include "render/shader_library.h"
+#include "render/view_block.h"
 
 namespace meniscus {
+
+/// A direction as shaders/include/occlusion.glsl takes it.
+struct OcclusionDirection {
+  glm::vec4 rowX, rowY, rowZ;
+  glm::ivec4 map;
+};
+
+/// How a frame that is one of several samples of a picture deals its directions out.
+struct OcclusionShare {
+  int directions = 0;  ///< that the frame uses
+  int parts = 1;       ///< into which neighbouring pixels divide them; 1 = each pixel uses all
+};
+OcclusionShare occlusionShare(int directions, int sampleCount);
 
 /// The maps and the pass's uniforms on the GPU.
 class OcclusionBuffers {
  public:
   /// Takes the maps of one picture, which `camera` sees.
   void set(const View& camera, const OcclusionMaps& maps);
-  /// Which of the directions the next frame uses: all, or for one of several samples its part.
-  void chooseDirections(int sample, int sampleCount);
+  /// Which of the directions the next frame's pixels use: all, or for one of several samples its part.
+  void chooseDirections(int sample, int sampleCount, const Tile& tile);
   void clear() { texels_ = {}; }
   std::uint64_t bytes() const { return texels_.bytes(); }
 
+  /// Into how many parts the next frame's target is divided.
+  int parts() const { return static_cast<int>(draws_.size()); }
+  /// Draws them; the G-buffer is bound to units 0 and 1.
+  void draw(ShaderLibrary& shaders) const;
+  /// The G-buffer's depth as the parts see it.
+  void divideDepth(ShaderLibrary& shaders) const;
+  /// Makes a block of uniforms current that says how the parts lie.
+  void bindFirst() const;
+
  private:
-  friend TextureRef addOcclusion(FrameGraph&, const OcclusionBuffers&, ShaderLibrary&, const GBufferRefs&,
-                                 int, int);
-  int groups_ = 0;             // of eight directions
-  int first_ = 0, count_ = 0;  // groups that the next frame uses
+  struct Draw {
+    int x, y, width, height;
+    int groups;  // of directions, added up
+  };
+  std::vector<OcclusionDirection> directions_;
+  glm::vec4 slab_{0.0f}, fade_{0.0f};
+  std::vector<Draw> draws_;
   gl::Buffer uniforms_;
   gl::Texture texels_;
 
-  void upload(const std::vector<std::uint32_t>& texels);
+  void upload(const std::vector<OcclusionTexel>& texels);
+  void eachDraw(const std::function<void(bool first)>& call) const;
 };
 
-/// Adds the pass. Returns per pixel what is hidden of the sky and the sky itself, in one unit (both 0 on the
-/// background).
+/// How far a pixel looks [pixels].
+int reachOf(const OcclusionSettings& settings, int sampleCount);
+
+/// Adds the passes. Returns per pixel what is hidden of the sky and the sky itself, in one unit (both 0 on
+/// the background).
 TextureRef addOcclusion(FrameGraph& graph, const OcclusionBuffers& buffers, ShaderLibrary& shaders,
                         const GBufferRefs& gbuffer, int width, int height);
 

@@ -91,9 +91,9 @@ TextureRef addShadow(FrameGraph& graph, const ShadowSettings& settings, const Sh
                      const ShadowUniforms& uniforms, ShaderLibrary& shaders, const GBufferRefs& gbuffer,
                      int width, int height) {
   const TextureRef mapRef = graph.import("shadow map", *map.depth, Clear::none);
-  const TextureRef visibility =
-      graph.create("visibility", {gl::TextureFormat::r16, width, height}, Clear::none);
-  graph.addPass("shadow", {gbuffer.depth, gbuffer.normal, mapRef}, {{visibility, 0}},
+  const TextureRef visibility = graph.create("visibility", {gl::TextureFormat::r16, width, height});
+  graph.addPass("shadow", {gbuffer.depth, gbuffer.normal, mapRef},
+                {{visibility, 0}, {gbuffer.depth, FrameGraph::kTestedDepth}},
                 [&uniforms, &shaders, gbuffer, mapRef,
                  soft = settings.mode == ShadowMode::soft](const PassContext& context) {
                   glBindTextureUnit(0, context.texture(gbuffer.depth).object.name());
@@ -102,7 +102,7 @@ TextureRef addShadow(FrameGraph& graph, const ShadowSettings& settings, const Sh
                   glBindBufferBase(GL_UNIFORM_BUFFER, 1, uniforms.name());
                   ShaderFlags flags;
                   if (soft) flags.insert("SOFT");
-                  drawFullscreen(shaders.program("post/fullscreen.vert", "post/shadow.frag", flags));
+                  drawOverSurface(shaders.program("post/fullscreen.vert", "post/shadow.frag", flags));
                 });
   return visibility;
 }

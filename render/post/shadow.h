@@ -30,7 +30,7 @@ class ShadowUniforms {
   gl::Buffer buffer_;
 };
 
-/// Adds the pass. Returns the share of the key light that arrives, per pixel (1 on the background).
+/// Adds the pass. Returns the share of the key light that arrives, per pixel (0 on the background).
 TextureRef addShadow(FrameGraph& graph, const ShadowSettings& settings, const ShadowMap& map,
                      const ShadowUniforms& uniforms, ShaderLibrary& shaders, const GBufferRefs& gbuffer,
                      int width, int height);

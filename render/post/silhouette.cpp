@@ -57,8 +57,8 @@ int reachOf(const SilhouetteSettings& settings) {
 TextureRef addSilhouette(FrameGraph& graph, const SilhouetteSettings& settings,
                          const SilhouetteUniforms& uniforms, ShaderLibrary& shaders,
                          const GBufferRefs& gbuffer, int width, int height) {
-  const TextureRef borders = graph.create("borders", {gl::TextureFormat::r16, width, height}, Clear::none);
-  const TextureRef lines = graph.create("lines", {gl::TextureFormat::r16, width, height}, Clear::none);
+  const TextureRef borders = graph.create("borders", {gl::TextureFormat::r16, width, height});
+  const TextureRef lines = graph.create("lines", {gl::TextureFormat::r16, width, height});
   ShaderFlags flags;
   if (settings.creases) flags.insert("CREASES");
   std::vector<TextureRef> reads{gbuffer.depth, gbuffer.normal};
@@ -72,20 +72,21 @@ TextureRef addSilhouette(FrameGraph& graph, const SilhouetteSettings& settings,
     glBindTextureUnit(1, context.texture(gbuffer.normal).object.name());
     glBindBufferBase(GL_UNIFORM_BUFFER, 1, uniforms.name());
   };
-  graph.addPass("silhouette", reads, {{borders, 0}},
+  graph.addPass("silhouette", reads, {{borders, 0}, {gbuffer.depth, FrameGraph::kTestedDepth}},
                 [&uniforms, &shaders, gbuffer, bindSurface, flags](const PassContext& context) {
                   bindSurface(context);
                   if (flags.contains("IDS")) glBindTextureUnit(2, context.texture(gbuffer.id).object.name());
                   if (flags.contains("GROUPS")) {
                     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, uniforms.groups().object.name());
                   }
-                  drawFullscreen(shaders.program("post/fullscreen.vert", "post/silhouette.frag", flags));
+                  drawOverSurface(shaders.program("post/fullscreen.vert", "post/silhouette.frag", flags));
                 });
-  graph.addPass("silhouette line", {gbuffer.depth, gbuffer.normal, borders}, {{lines, 0}},
+  graph.addPass("silhouette line", {gbuffer.depth, gbuffer.normal, borders},
+                {{lines, 0}, {gbuffer.depth, FrameGraph::kTestedDepth}},
                 [&shaders, bindSurface, borders](const PassContext& context) {
                   bindSurface(context);
                   glBindTextureUnit(2, context.texture(borders).object.name());
-                  drawFullscreen(shaders.program("post/fullscreen.vert", "post/silhouette_line.frag", {}));
+                  drawOverSurface(shaders.program("post/fullscreen.vert", "post/silhouette_line.frag", {}));
                 });
   return lines;
 }

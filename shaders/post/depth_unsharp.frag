@@ -12,8 +12,6 @@ layout(location = 0) out float oDifference;
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   float depth = texelFetch(tDepth, at, 0).r;
-  oDifference = 0.0;
-  if (depth <= 0.0) return;
   // Between the centres of four blocks.
   vec2 place = (vec2(at + uGrid.xy) + 0.5) / float(uGrid.z) - 0.5;
   vec2 corner = floor(place);
@@ -27,5 +25,5 @@ void main() {
   vec2 above =
       mix(texelFetch(tBlurred, ivec2(low.x, high.y), 0).xy, texelFetch(tBlurred, high, 0).xy, share.x);
   vec2 sum = mix(below, above, share.y);
-  if (sum.y > 0.0) oDifference = nearness(depth) - sum.x / sum.y;
+  oDifference = sum.y > 0.0 ? nearness(depth) - sum.x / sum.y : 0.0;
 }

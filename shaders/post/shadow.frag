@@ -14,8 +14,6 @@ layout(location = 0) out float oVisibility;
 void main() {
   ivec2 here = ivec2(gl_FragCoord.xy);
   float depth = texelFetch(tDepth, here, 0).r;
-  oVisibility = 1.0;
-  if (depth <= 0.0) return;
   vec3 point = viewPoint(uView, gl_FragCoord.xy + uView.tile.xy, depth);
   oVisibility = keyLightAt(point, decodeNormal(texelFetch(tNormal, here, 0).xy));
 }

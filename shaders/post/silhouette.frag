@@ -80,8 +80,6 @@ uint lineTowards(Surface here, uint group, ivec2 at, ivec2 towards) {
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   float depth = texelFetch(tDepth, at, 0).r;
-  oBorders = 0.0;
-  if (depth <= 0.0) return;
   Surface here = surfaceAt(at, depth);
   uint group = 0u;
 #ifdef IDS

@@ -28,13 +28,18 @@ uint bordersAt(ivec2 at) {
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   float depth = texelFetch(tDepth, at, 0).r;
-  oLine = 0.0;
-  if (depth <= 0.0) return;
   Surface here = surfaceAt(at, depth);
   float line = coverage(bordersAt(at), vec2(0.0));
   int reach = int(uCrease.w);
   ivec2 low = max(at - reach, ivec2(0)) - at;
   ivec2 high = min(at + reach, textureSize(tBorders, 0) - 1) - at;
+  // llvmpipe runs a loop for as long as any of its pixels does, but both sides of an `if`: where no border is
+  // near, which is nearly everywhere, the second loop ends at once.
+  uint any = 0u;
+  for (int y = low.y; y <= high.y; ++y) {
+    for (int x = low.x; x <= high.x; ++x) any |= bordersAt(at + ivec2(x, y));
+  }
+  if (any == 0u) high.y = low.y - 1;
   for (int y = low.y; y <= high.y; ++y) {
     for (int x = low.x; x <= high.x; ++x) {
       ivec2 offset = ivec2(x, y);

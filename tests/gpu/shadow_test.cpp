@@ -215,7 +215,7 @@ TEST_F(ShadowTest, ConvexObjectsHaveNoAcne) {
         int acne = 0, facing = 0, leaks = 0;
         for (std::size_t i = 0; i < visibility.size(); ++i) {
           if (shadows.depth()[i] == 0.0f) {
-            EXPECT_EQ(visibility[i], 1.0f);
+            EXPECT_EQ(visibility[i], 0.0f);
             continue;
           }
           const double cosine = glm::dot(glm::dvec3(shadows.normal()[i]), glm::normalize(towards));

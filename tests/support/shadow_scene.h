@@ -21,7 +21,7 @@ class ShadowScene {
   ShadowScene(const Primitives& primitives, const View& view, const DirectionalLight& key,
               double penumbra = 2);
 
-  /// Share of the key light that arrives, rows from the bottom; 1 on the background. `sample` of
+  /// Share of the key light that arrives, rows from the bottom; 0 on the background. `sample` of
   /// `sampleCount`: see ShadowUniforms::set.
   std::vector<float> visibility(const ShadowSettings& settings, int sample = 0, int sampleCount = 1);
   /// How long the last pass took [ms].

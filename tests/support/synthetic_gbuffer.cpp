@@ -50,6 +50,7 @@ SurfaceFunction sphereAt(const glm::dvec3& center, double radius) {
 }
 
 SyntheticGBuffer::SyntheticGBuffer(const View& view, const SurfaceFunction& surface) {
+  glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);  // as the renderer
   const int width = view.size.width, height = view.size.height;
   const f32::ViewBlock block = makeViewBlock(view, view.pivot, {0, 0, width, height}, {0, 0});
   std::vector<float> depths;
