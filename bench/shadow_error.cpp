@@ -33,7 +33,7 @@ struct Source {
 const Source kSources[] = {
     {"ubiquitin, space-filling", {"1ubq.pdb"}},
     {"hemoglobin, space-filling", {"2hhb.pdb.gz"}},
-    {"hemoglobin, space-filling", {"2hhb.pdb.gz"}, 0.5},
+    {"hemoglobin, space-filling", {"2hhb.pdb.gz"}, 0.6},
     {"hemoglobin, licorice", {"2hhb.pdb.gz", Representation::licorice}},
     {"ACE2 x 8, space-filling", {"7ddo.pdb.gz", Representation::spacefill, {2, 2, 2}}},
 };

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/geometric.hpp>
+#include <glm/packing.hpp>
 #include <glm/vec4.hpp>
 #include <vector>
 
@@ -27,7 +28,7 @@ constexpr double kInnerRing = 0.45, kOuterRing = 0.92;
 // Layout of ShadowUniforms in shaders/post/shadow.frag.
 struct ShadowBlock {
   glm::vec4 rowX, rowY, rowZ, map, filter;
-  std::array<glm::vec2, kMaxShadowSamples> offsets;
+  std::array<std::uint32_t, kMaxShadowSamples> offsets;
 };
 
 // Spread over the unit disc: equal areas between the radii, a golden angle between neighbours.
@@ -78,12 +79,14 @@ void ShadowUniforms::set(const ShadowSettings& settings, const View& camera, con
       glm::vec4(glm::dvec4(light.size.width, light.size.height, light.nearZ - light.farZ, light.pixelSize));
   // At least a texel: a narrower filter would show the map's steps.
   const double radius = std::max(0.5 * settings.penumbra * perTexel, 1.0);
-  block.filter = glm::vec4(glm::dvec4(radius, settings.samples, settings.probes, 0.0));
+  const int probes = std::min((settings.probes + 3) / 4 * 4, settings.samples);
+  block.filter = glm::vec4(glm::dvec4(radius, settings.samples, probes, 0.0));
   const double turn =
       sampleCount > 1 ? sample * kGoldenAngle / std::sqrt(static_cast<double>(sampleCount)) : 0;
   std::vector<glm::dvec2> points = discPattern(settings.samples, turn);
-  probesFirst(points, settings.probes, turn);
-  std::copy(points.begin(), points.end(), block.offsets.begin());
+  probesFirst(points, probes, turn);
+  std::transform(points.begin(), points.end(), block.offsets.begin(),
+                 [](const glm::dvec2& p) { return glm::packSnorm2x16(glm::vec2(p)); });
   buffer_.update(&block);
 }
 

@@ -12,8 +12,9 @@ const int kMaxSamples = 256;
 layout(std140, binding = 1) uniform ShadowUniforms {
   vec4 uRowX, uRowY, uRowZ;  // camera's view space -> map: texels, texels, height above the far plane [Å]
   vec4 uMap;  // x, y: size [texels]; z: height of the near plane above the far plane [Å]; w: texel size [Å]
-  vec4 uFilter;                    // x: radius [texels]; y: samples; z: probes; w: 0
-  vec4 uOffsets[kMaxSamples / 2];  // in the unit disc, two to a vec4
+  vec4 uFilter;  // x: radius [texels]; y: samples; z: probes, a multiple of 4 or y; w: 0
+  uvec4 uOffsets[kMaxSamples /
+                 4];  // in the unit disc, as packSnorm2x16: llvmpipe fetches each number per pixel
 };
 
 // Error of a stored normal [rad]: 16-bit octahedral.
@@ -23,19 +24,29 @@ const float kPositionError = 2e-6;
 
 struct Receiver {
   vec2 at;       // texels
-  float height;  // [Å]
-  vec3 normal;   // x, y: unit normal times the size of a texel; z: along the light, > 0
+  float height;  // what the map would hold of it
+  vec3 needed;   // by how much a texel must be above it to be above its tangent plane, in the map's unit: z
+                // for the rounding, and by x and y per texel away; before division by the cosine to the light
+  vec2 factor;  // by which to divide: for what is above, for what is below
 };
+
+// normal: unit, in the map's axes, z > 0; height: [Å].
+Receiver makeReceiver(vec2 at, float height, vec3 normal, float reach) {
+  Receiver r;
+  r.at = at;
+  r.height = height / uMap.z;
+  float perTexel = uMap.w / uMap.z;
+  r.needed = vec3(-normal.xy * perTexel, kPositionError + 2.0 * kNormalError * perTexel * reach);
+  r.factor = 1.0 / vec2(max(normal.z - kNormalError, 1e-9), normal.z + kNormalError);
+  return r;
+}
 
 // 1 where the light reaches the tangent plane over a texel.
 float litAt(Receiver r, ivec2 texel) {
-  if (any(lessThan(texel, ivec2(0))) || any(greaterThanEqual(texel, ivec2(uMap.xy)))) return 1.0;
-  float height = texelFetch(tMap, texel, 0).r * uMap.z;
-  vec2 away = vec2(texel) + 0.5 - r.at;
-  float rise = height - r.height;
-  float above = dot(r.normal, vec3(away, rise));
-  float bias = kPositionError * uMap.z + kNormalError * (uMap.w * (abs(away.x) + abs(away.y)) + abs(rise));
-  return height > 0.0 && above > bias ? 0.0 : 1.0;  // 0: nothing there
+  float height = texelFetch(tMap, clamp(texel, ivec2(0), ivec2(uMap.xy) - 1), 0).r;
+  float needed = dot(r.needed, vec3(vec2(texel) + 0.5 - r.at, 1.0));
+  float least = r.height + max(needed * r.factor.x, needed * r.factor.y);
+  return height > max(least, 0.0) ? 0.0 : 1.0;  // 0: nothing there
 }
 
 // The four texels around a place, weighted by nearness.
@@ -48,21 +59,29 @@ float litAround(Receiver r, vec2 place) {
   return mix(low, high, f.y);
 }
 
-vec2 offsetOf(int i) {
-  vec4 pair = uOffsets[i >> 1];
-  return (i & 1) == 0 ? pair.xy : pair.zw;
+float litBy(Receiver r, uint offset) {
+  return litAt(r, ivec2(floor(r.at + uFilter.x * unpackSnorm2x16(offset))));
+}
+
+// How many of the samples from `first`, a multiple of 4, up to `end` see the light.
+float litSamples(Receiver r, int first, int end) {
+  float sum = 0.0;
+  for (int i = first; i < end; i += 4) {
+    uvec4 offsets = uOffsets[i >> 2];
+    vec4 lit = vec4(litBy(r, offsets.x), litBy(r, offsets.y), litBy(r, offsets.z), litBy(r, offsets.w));
+    sum += dot(lit, vec4(lessThan(i + ivec4(0, 1, 2, 3), ivec4(end))));
+  }
+  return sum;
 }
 
 float visibility(Receiver r) {
 #ifdef SOFT
   int count = int(uFilter.y);
-  int probes = min(int(uFilter.z), count);
-  float sum = 0.0;
-  int taken = 0;
-  for (; taken < probes; ++taken) sum += litAt(r, ivec2(floor(r.at + uFilter.x * offsetOf(taken))));
-  if (probes > 0 && (sum == 0.0 || sum == float(probes))) return sum / float(probes);
-  for (; taken < count; ++taken) sum += litAt(r, ivec2(floor(r.at + uFilter.x * offsetOf(taken))));
-  return sum / float(count);
+  int probes = int(uFilter.z);
+  float sum = litSamples(r, 0, probes);
+  bool agree = probes > 0 && (sum == 0.0 || sum == float(probes));
+  sum += litSamples(r, probes, agree ? 0 : count);
+  return sum / float(agree ? probes : count);
 #else
   return litAround(r, r.at);
 #endif
@@ -70,11 +89,9 @@ float visibility(Receiver r) {
 
 // Share of the key light that reaches a surface point; both in view space, normal: unit.
 float keyLightAt(vec3 point, vec3 normal) {
-  vec3 n = vec3(dot(uRowX.xyz, normal), dot(uRowY.xyz, normal), dot(uRowZ.xyz, normal));
-  if (n.z <= 0.0) return 0.0;
-  Receiver r;
-  r.at = vec2(dot(uRowX, vec4(point, 1.0)), dot(uRowY, vec4(point, 1.0)));
-  r.height = dot(uRowZ, vec4(point, 1.0));
-  r.normal = vec3(n.xy * uMap.w * uMap.w, n.z);  // rows x and y are per texel
-  return visibility(r);
+  // Rows x and y are per texel.
+  vec3 n = vec3(vec2(dot(uRowX.xyz, normal), dot(uRowY.xyz, normal)) * uMap.w, dot(uRowZ.xyz, normal));
+  vec3 at = vec3(dot(uRowX, vec4(point, 1.0)), dot(uRowY, vec4(point, 1.0)), dot(uRowZ, vec4(point, 1.0)));
+  float lit = visibility(makeReceiver(at.xy, at.z, n, uFilter.x + 1.0));
+  return n.z > 0.0 ? lit : 0.0;
 }

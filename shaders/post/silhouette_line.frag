@@ -9,16 +9,21 @@ layout(binding = 2) uniform sampler2D tBorders;
 
 layout(location = 0) out float oLine;  // share of the pixel that is line
 
+// Squares of the least distances to borders with a whole line (x) and half a line (y).
+const float kFar = 1e6;
+
 // offset: the pixel that has the borders, as seen from this one.
-float coverage(uint borders, vec2 offset) {
+vec2 nearest(uint borders, vec2 offset) {
   // Distances from this pixel's centre to the borders' middles: across the border and along it. From the
   // middles, because from the nearest points a slanting edge, which is stairs, would be too wide by 20 %.
   vec4 across = vec4(offset.x, -offset.x, offset.y, -offset.y) + 0.5;
-  vec4 along = offset.yyxx;
-  vec4 width = 0.5 * uCrease.z * vec4(uvec4(borders, borders >> 2, borders >> 4, borders >> 6) & 3u);
-  vec4 share = mix(vec4(0.0), width + 0.5 - sqrt(across * across + along * along),
-                   greaterThan(min(width, across), vec4(0.0)));
-  return clamp(max(max(share.x, share.y), max(share.z, share.w)), 0.0, 1.0);
+  vec4 square = across * across + (offset * offset).yyxx;
+  square = mix(vec4(kFar), square, greaterThan(across, vec4(0.0)));
+  uvec4 kind = uvec4(borders, borders >> 2, borders >> 4, borders >> 6) & 3u;
+  vec4 whole = mix(vec4(kFar), square, equal(kind, uvec4(2u)));
+  vec4 half_ = mix(vec4(kFar), square, equal(kind, uvec4(1u)));
+  return vec2(min(min(whole.x, whole.y), min(whole.z, whole.w)),
+              min(min(half_.x, half_.y), min(half_.z, half_.w)));
 }
 
 uint bordersAt(ivec2 at) {
@@ -27,29 +32,25 @@ uint bordersAt(ivec2 at) {
 
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
-  float depth = texelFetch(tDepth, at, 0).r;
-  Surface here = surfaceAt(at, depth);
-  float line = coverage(bordersAt(at), vec2(0.0));
+  Surface here = surfaceAt(at, texelFetch(tDepth, at, 0).r);
   int reach = int(uCrease.w);
   ivec2 low = max(at - reach, ivec2(0)) - at;
   ivec2 high = min(at + reach, textureSize(tBorders, 0) - 1) - at;
-  // llvmpipe runs a loop for as long as any of its pixels does, but both sides of an `if`: where no border is
-  // near, which is nearly everywhere, the second loop ends at once.
-  uint any = 0u;
-  for (int y = low.y; y <= high.y; ++y) {
-    for (int x = low.x; x <= high.x; ++x) any |= bordersAt(at + ivec2(x, y));
-  }
-  if (any == 0u) high.y = low.y - 1;
+  vec2 square = vec2(kFar);
   for (int y = low.y; y <= high.y; ++y) {
     for (int x = low.x; x <= high.x; ++x) {
-      ivec2 offset = ivec2(x, y);
-      uint borders = bordersAt(at + offset);
-      if (borders == 0u) continue;
-      float share = coverage(borders, vec2(offset));
-      if (share <= line) continue;
-      Surface there = surfaceAt(at + offset, texelFetch(tDepth, at + offset, 0).r);
-      if (!isApart(here, there, length(vec2(offset)))) line = share;  // else it is another surface's line
+      vec2 offset = vec2(x, y);
+      vec2 there = nearest(bordersAt(at + ivec2(x, y)), offset);
+      // Else it is another surface's line. Its point against this pixel's plane is enough, the border itself
+      // has been judged from both sides.
+      vec3 point = viewPoint(uView, vec2(at) + offset + 0.5 + uView.tile.xy,
+                             texelFetch(tDepth, at + ivec2(x, y), 0).r);
+      float gap = abs(dot(here.normal, point - here.point));
+      bool same = gap <= max(uStep.x * here.footprint * length(offset), uStep.y) + uStep.z;
+      square = min(square, mix(vec2(kFar), there, bvec2(same)));
     }
   }
-  oLine = line;
+  vec2 width = uCrease.z * vec2(1.0, 0.5);
+  vec2 share = width + 0.5 - sqrt(square);
+  oLine = clamp(max(share.x, share.y), 0.0, 1.0);
 }
