@@ -55,7 +55,7 @@ SyntheticGBuffer::SyntheticGBuffer(const View& view, const SurfaceFunction& surf
   const f32::ViewBlock block = makeViewBlock(view, view.pivot, {0, 0, width, height}, {0, 0});
   std::vector<float> depths;
   std::vector<std::uint16_t> normals;
-  std::vector<std::uint32_t> ids;
+  std::vector<std::uint32_t> ids, colors;
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       const std::optional<SurfaceSample> s = surface(rayThrough(view, {x + 0.5, y + 0.5}));
@@ -64,6 +64,7 @@ SyntheticGBuffer::SyntheticGBuffer(const View& view, const SurfaceFunction& surf
       for (const float part : {normal.x, normal.y})
         normals.push_back(static_cast<std::uint16_t>(std::lround(part * 65535.0f)));
       ids.push_back(s ? s->id : 0);
+      colors.push_back(s ? 0xFFFFFFFFu : 0);
     }
   }
   depth_ = gl::Texture::make({gl::TextureFormat::depth32f, width, height});
@@ -75,6 +76,9 @@ SyntheticGBuffer::SyntheticGBuffer(const View& view, const SurfaceFunction& surf
   glTextureSubImage2D(normal_.object.name(), 0, 0, 0, width, height, GL_RG, GL_UNSIGNED_SHORT,
                       normals.data());
   glTextureSubImage2D(id_.object.name(), 0, 0, 0, width, height, GL_RED_INTEGER, GL_UNSIGNED_INT, ids.data());
+  albedo_ = gl::Texture::make({gl::TextureFormat::rgba8, width, height});
+  glTextureSubImage2D(albedo_.object.name(), 0, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE,
+                      colors.data());
   view_ = gl::Buffer::fromData(&block, sizeof(block));
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, view_.object.name());
 }
@@ -84,6 +88,7 @@ GBufferRefs SyntheticGBuffer::import(FrameGraph& graph) const {
   refs.depth = graph.import("depth", depth_, Clear::none);
   refs.normal = graph.import("normal", normal_, Clear::none);
   refs.id = graph.import("id", id_, Clear::none);
+  refs.albedo = graph.import("albedo", albedo_, Clear::none);
   return refs;
 }
 
@@ -93,8 +98,12 @@ std::vector<double> run(FrameGraph& graph, TextureRef wanted) {
   graph.execute(stats, false);
   const gl::Texture& texture = graph.texture(wanted);
   const int width = texture.desc.width, height = texture.desc.height;
-  const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  if (texture.desc.format == gl::TextureFormat::r32f) {
+  const gl::TextureFormat format = texture.desc.format;
+  const std::size_t channels = format == gl::TextureFormat::rgba32f ? 4
+                               : format == gl::TextureFormat::rg16  ? 2
+                                                                    : 1;
+  const std::size_t count = channels * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  if (format == gl::TextureFormat::r32f || format == gl::TextureFormat::rgba32f) {
     std::vector<float> values(count);
     texture.read(width, height, width, values.data());
     return {values.begin(), values.end()};

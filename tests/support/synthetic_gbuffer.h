@@ -33,14 +33,16 @@ SurfaceFunction sphereAt(const glm::dvec3& center, double radius);
 class SyntheticGBuffer {
  public:
   SyntheticGBuffer(const View& view, const SurfaceFunction& surface);
+  /// White where there is a surface.
   GBufferRefs import(FrameGraph& graph) const;
+  const gl::Texture& depth() const { return depth_; }
 
  private:
-  gl::Texture depth_, normal_, id_;
+  gl::Texture depth_, normal_, id_, albedo_;
   gl::Buffer view_;
 };
 
-/// Runs the graph and reads an R16 or R32F texture, rows from the bottom.
+/// Runs the graph and reads an R16, RG16, R32F or RGBA32F texture, rows from the bottom.
 std::vector<double> run(FrameGraph& graph, TextureRef wanted);
 
 }  // namespace meniscus::test
