@@ -1,6 +1,7 @@
 #include "bench/bench_scenes.h"
 
 #include <algorithm>
+#include <ctime>
 #include <filesystem>
 
 #include "core/bonds.h"
@@ -67,10 +68,10 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-double timeMs(const std::function<void()>& call) {
-  const auto start = std::chrono::steady_clock::now();
+double processorMs(const std::function<void()>& call) {
+  const std::clock_t start = std::clock();
   call();
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
 }  // namespace meniscus::bench

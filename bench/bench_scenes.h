@@ -1,7 +1,6 @@
 #pragma once
 // What the benchmarks draw, and how they measure.
 
-#include <chrono>
 #include <functional>
 #include <memory>
 #include <string>
@@ -38,7 +37,8 @@ class NullSink : public RowSink {
 
 double median(std::vector<double> values);
 
-/// Wall time of a call [ms].
-double timeMs(const std::function<void()>& call);
+/// Processor time of a call, of all threads together [ms]: without a GPU it is what drawing costs, however
+/// busy the machine is with other work.
+double processorMs(const std::function<void()>& call);
 
 }  // namespace meniscus::bench

@@ -1,12 +1,14 @@
 // Table 1 and §5 of Sigg, Weyrich, Botsch, Gross, GPU-Based Ray-Casting of Quadratic Surfaces, PBG 2006, on
 // this machine: the same shading done for every fragment (direct) and once per pixel (deferred), 1024 x 768,
-// without and with soft shadows.
+// without and with soft shadows, and with lines.
 //
 //   direct_vs_deferred [repetitions] > direct_vs_deferred.csv
 //
 // Both draw the same quadrics with the same vertex programs in the same order, and filter the same shadow map
-// with the same code; times are medians of interleaved repetitions, reading back excluded. The direct program
-// is bench/shaders/; deferred is the renderer. Lines, the paper's third effect, would be another Kind.
+// with the same code; times are processor times, medians of interleaved repetitions, with reading back. The
+// direct program is bench/shaders/; deferred is the renderer. Lines need their neighbours' depths and
+// normals, which only deferred shading has: as in the paper, its time with lines is compared with the direct
+// one's without.
 
 #include <fmt/format.h>
 #include <glad/gl.h>
@@ -51,10 +53,24 @@ const Source kSources[] = {
 struct Kind {
   const char* name;
   ShadowSettings shadows;
+  bool lines = false;  // right after the same without
 };
+const ShadowSettings kAll{ShadowMode::soft, 2, 64, 0},
+    kAdaptive{ShadowMode::soft, 2, 64, ShadowSettings{}.probes};
 const Kind kKinds[] = {{"no shadows", {}},
-                       {"soft shadows, 64 samples", {ShadowMode::soft, 2, 64, 0}},
-                       {"soft shadows, adaptive", {ShadowMode::soft, 2, 64, ShadowSettings{}.probes}}};
+                       {"no shadows, lines", {}, true},
+                       {"soft shadows, 64 samples", kAll},
+                       {"soft shadows, 64 samples, lines", kAll, true},
+                       {"soft shadows, adaptive", kAdaptive},
+                       {"soft shadows, adaptive, lines", kAdaptive, true}};
+
+RenderSettings settingsOf(const ShadowSettings& shadows, bool lines) {
+  RenderSettings settings;
+  settings.samples = 1;
+  settings.shadows = shadows;
+  settings.lines.silhouettes = settings.lines.creases = lines;
+  return settings;
+}
 
 // Layout of DirectUniforms in bench/shaders/direct.glsl.
 struct DirectBlock {
@@ -116,10 +132,9 @@ class DirectRenderer {
     graph.execute(stats_, false);
     glFinish();
     pixels_.resize(static_cast<std::size_t>(view.size.width * view.size.height) * 4);
-    if (keep) graph.texture(picture).read(view.size.width, view.size.height, view.size.width, pixels_.data());
+    graph.texture(picture).read(view.size.width, view.size.height, view.size.width, pixels_.data());
   }
 
-  bool keep = false;                                                   ///< read the picture back
   const std::vector<std::uint8_t>& pixels() const { return pixels_; }  ///< rows from the bottom
 
  private:
@@ -183,19 +198,17 @@ void measure(const Source& source, int repetitions) {
   Renderer deferred;
   deferred.setPrimitives(scene.primitives);
   const auto drawDeferred = [&](const Kind& kind, RowSink& sink) {
-    RenderSettings settings;
-    settings.samples = 1;
-    settings.shadows = kind.shadows;
-    deferred.renderPicture(scene.view, lighting, kNothing, settings, PixelFormat::rgba8, sink);
+    deferred.renderPicture(scene.view, lighting, kNothing, settingsOf(kind.shadows, kind.lines),
+                           PixelFormat::rgba8, sink);
   };
   constexpr std::size_t kCount = std::size(kKinds);
   std::vector<double> directMs[kCount], deferredMs[kCount];
   double difference[kCount] = {};
+  double directTime = 0;
   for (int repetition = -1; repetition < repetitions; ++repetition) {  // the first warms up and compares
     for (std::size_t k = 0; k < kCount; ++k) {
-      direct.keep = repetition < 0;
-      const double ms = timeMs([&] { direct.draw(scene.view, lighting, kKinds[k].shadows); });
-      const double before = deferred.stats().drawMs;
+      if (!kKinds[k].lines)
+        directTime = processorMs([&] { direct.draw(scene.view, lighting, kKinds[k].shadows); });
       if (repetition < 0) {
         ByteSink sink;
         drawDeferred(kKinds[k], sink);
@@ -203,16 +216,16 @@ void measure(const Source& source, int repetitions) {
         continue;
       }
       NullSink sink;
-      drawDeferred(kKinds[k], sink);
-      directMs[k].push_back(ms);
-      deferredMs[k].push_back(deferred.stats().drawMs - before);
+      directMs[k].push_back(directTime);
+      deferredMs[k].push_back(processorMs([&] { drawDeferred(kKinds[k], sink); }));
     }
   }
   for (std::size_t k = 0; k < kCount; ++k) {
     const double a = median(directMs[k]), b = median(deferredMs[k]);
-    fmt::print("table,\"{}\",{},{},\"{}\",{:.1f},{:.1f},{:.2f},{:.2f},{:.5f}\n", source.name,
+    fmt::print("table,\"{}\",{},{},\"{}\",{:.1f},{:.1f},{:.2f},{:.2f},{}\n", source.name,
                scene.primitives->spheres.size(), scene.primitives->cylinders.size(), kKinds[k].name, a, b,
-               a / b, source.paperRatio[k > 0], difference[k]);
+               a / b, source.paperRatio[kKinds[k].shadows.mode != ShadowMode::off],
+               kKinds[k].lines ? std::string() : fmt::format("{:.5f}", difference[k]));
     std::fflush(stdout);
   }
 
@@ -220,19 +233,17 @@ void measure(const Source& source, int repetitions) {
   Renderer timed(RendererOptions{.shaderDir = {}, .timePasses = true, .maxTileSize = 0});
   timed.setPrimitives(scene.primitives);
   const auto passMs = [&](const ShadowSettings& shadows) {
-    RenderSettings settings;
-    settings.samples = 1;
-    settings.shadows = shadows;
     std::map<std::string, double> before, spent;
     for (const PassStats& pass : timed.stats().passes) before[pass.name] = pass.milliseconds;
     NullSink sink;
-    timed.renderPicture(scene.view, lighting, kNothing, settings, PixelFormat::rgba8, sink);
+    timed.renderPicture(scene.view, lighting, kNothing, settingsOf(shadows, true), PixelFormat::rgba8, sink);
     for (const PassStats& pass : timed.stats().passes) {
       const double ms = pass.milliseconds - before[pass.name];
       if (ms <= 0) continue;
       const bool map = pass.name.starts_with("shadow map");
       spent[map                                             ? "shadow map"
             : pass.name == "shadow" || pass.name == "shade" ? pass.name
+            : pass.name.starts_with("silhouette")           ? "lines"
                                                             : "quadrics"] += ms;
     }
     return spent;
@@ -243,7 +254,8 @@ void measure(const Source& source, int repetitions) {
     const auto adaptive = passMs({ShadowMode::soft, 2, 64, probes});
     const auto probing = passMs({ShadowMode::soft, 2, probes, 0});
     if (repetition < 0) continue;
-    for (const char* part : {"shadow map", "quadrics", "shade"}) parts[part].push_back(adaptive.at(part));
+    for (const char* part : {"shadow map", "quadrics", "shade", "lines"})
+      parts[part].push_back(adaptive.at(part));
     const double test = std::min(probing.at("shadow"), adaptive.at("shadow"));
     parts["probes"].push_back(test);
     parts["refinement"].push_back(adaptive.at("shadow") - test);

@@ -2,9 +2,9 @@
 //
 //   shadow_error [repetitions] > shadow_error.csv
 //
-// A row per scene and setting. Shadow errors are over the pixels that face the light; times are medians of
-// interleaved repetitions: of the shadow pass alone, and of the whole frame (shadow map, G-buffer, shadow,
-// shading) through the renderer.
+// A row per scene and setting. Shadow errors are over the pixels that face the light; processor times are
+// medians of interleaved repetitions: of the shadow pass alone, and of the whole frame (shadow map, G-buffer,
+// shadow, shading) through the renderer.
 
 #include <fmt/format.h>
 
@@ -117,11 +117,12 @@ void measureShadows(const Source& source, int repetitions) {
       settings.samples = 1;
       settings.shadows = shadowsOf(source, kSettings[s]);
       NullSink sink;
-      const double before = renderer.stats().drawMs;
-      renderer.renderPicture(scene.view, lighting, Background{}, settings, PixelFormat::rgba8, sink);
+      const double ms = processorMs([&] {
+        renderer.renderPicture(scene.view, lighting, Background{}, settings, PixelFormat::rgba8, sink);
+      });
       if (repetition < 0) continue;
       passMs[s].push_back(shadows.passMs());
-      frameMs[s].push_back(renderer.stats().drawMs - before);
+      frameMs[s].push_back(ms);
     }
   }
   for (std::size_t s = 0; s < kCount; ++s) {
@@ -162,9 +163,10 @@ void measureSupersampling(const Source& source, int repetitions) {
   Error errors[std::size(counts)];
   for (int repetition = -1; repetition < repetitions; ++repetition) {
     for (std::size_t s = 0; s < std::size(counts); ++s) {
-      const double before = renderer.stats().drawMs;
-      errors[s] = compare(draw(counts[s]), truth, all);
-      if (repetition >= 0) ms[s].push_back(renderer.stats().drawMs - before);
+      std::vector<float> picture;
+      const double spent = processorMs([&] { picture = draw(counts[s]); });
+      errors[s] = compare(picture, truth, all);
+      if (repetition >= 0) ms[s].push_back(spent);
     }
   }
   for (std::size_t s = 0; s < std::size(counts); ++s) {

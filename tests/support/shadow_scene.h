@@ -24,7 +24,7 @@ class ShadowScene {
   /// Share of the key light that arrives, rows from the bottom; 0 on the background. `sample` of
   /// `sampleCount`: see ShadowUniforms::set.
   std::vector<float> visibility(const ShadowSettings& settings, int sample = 0, int sampleCount = 1);
-  /// How long the last pass took [ms].
+  /// Processor time of the last pass, of all threads together [ms].
   double passMs() const { return passMs_; }
 
   const View& light() const { return map_.light; }
