@@ -1,0 +1,48 @@
+#pragma once
+// Spheres, cylinders and ellipsoids as the tile lists and the quadric caster take them.
+
+#include <vector>
+
+#include "core/primitives.h"
+#include "core/tiles/tile_lists.h"
+#include "core/tiles/tile_projection.h"
+
+namespace meniscus::tiles {
+
+enum class QuadricKind : std::uint32_t { sphere, cylinder, ellipsoid };
+
+/// A primitive as seen from a view. Rays are given relative to its centre: in the plane across the view
+/// through it they pass at perPixel * (pixel - projected centre), or they start at the eye.
+struct QuadricRecord {
+  double pixelX, pixelY;            ///< projected centre, pixels of the whole picture
+  float perPixel;                   ///< [Å] in the centre's plane
+  float centerX, centerY, centerZ;  ///< view space
+  float eyeAbove;                   ///< z of the eye above the centre
+  float radius;                     ///< sphere, cylinder
+  float front;                      ///< largest z of its points in view space
+  float rangeHi, rangeLo;           ///< distance of the centre along its ray
+  QuadricKind kind;
+  std::uint32_t fromEye;               ///< take the rays from the eye
+  std::uint32_t meetsNear;             ///< its front may lie before the near plane
+  std::uint32_t albedo[2], id[2];      ///< a cylinder's halves; else the first counts
+  float axisU[3], axisV[3], axisW[3];  ///< cylinder: its axis is u, its half length radii[0]
+  float radii[3];
+};
+
+class QuadricSource : public TileSource {
+ public:
+  /// Both must outlive it.
+  QuadricSource(const Primitives& primitives, const TileTarget& target)
+      : primitives_(primitives), projection_(target) {}
+
+  std::size_t size() const override;
+  void place(std::size_t first, std::size_t last, Placement* out) const override;
+  Occluder occluder(std::size_t index) const override;
+  void record(std::size_t index, QuadricRecord& out) const;
+
+ private:
+  const Primitives& primitives_;
+  TileProjection projection_;
+};
+
+}  // namespace meniscus::tiles

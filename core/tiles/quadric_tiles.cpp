@@ -1,0 +1,49 @@
+#include "core/tiles/quadric_tiles.h"
+
+#include <tbb/parallel_for.h>
+
+#include "core/tiles/quadric_caster.h"
+#include "core/tiles/quadric_source.h"
+
+namespace meniscus::tiles {
+
+void QuadricTiles::setPrimitives(const Primitives* primitives) {
+  primitives_ = primitives;
+  valid_ = false;
+}
+
+void QuadricTiles::cast(const TileTarget& target, const PlaneChannels& channels, Planes& planes) {
+  const QuadricSource source(*primitives_, target);
+  if (!valid_ || !sameLists(listed_, target)) {
+    lists_.build(source, target);
+    listed_ = target;
+    valid_ = true;
+    ++builds_;
+  }
+  planes.resize(target.area.width, target.area.height, channels);
+  const TileGrid& grid = lists_.grid();
+  tbb::parallel_for(0, grid.blocks(), [&](int b) {
+    const TileBlock& block = lists_.block(b);
+    thread_local std::vector<QuadricRecord> records;
+    records.resize(block.members.size());
+    for (std::size_t i = 0; i < records.size(); ++i) source.record(block.members[i], records[i]);
+    TileRays rays = makeRays(target, LaneOrder::rows);
+    TilePixels pixels;
+    for (int t = 0; t < kTilesPerBlock; ++t) {
+      const int column = b % grid.blockColumns * kBlockTiles + t % kBlockTiles,
+                row = b / grid.blockColumns * kBlockTiles + t / kBlockTiles;
+      if (column >= grid.columns || row >= grid.rows) continue;
+      const int x = grid.x + column * kTileSize, y = grid.y + row * kTileSize;
+      const std::span<const std::uint32_t> list = block.list(t);
+      if (list.empty()) {
+        clearTile(target.area, x, y, planes);
+        continue;
+      }
+      moveRays(rays, target, x, y);
+      castQuadrics(records, list, lists_.slack(), rays, channels, pixels);
+      storeTile(pixels, target.area, x, y, planes);
+    }
+  });
+}
+
+}  // namespace meniscus::tiles

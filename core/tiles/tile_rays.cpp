@@ -1,0 +1,86 @@
+#include "core/tiles/tile_rays.h"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
+namespace meniscus::tiles {
+
+int lanePixelX(LaneOrder order, int lane) {
+  if (order == LaneOrder::rows) return lane % kTileSize;
+  return (lane & 1) | (lane >> 2 & 1) << 1 | (lane >> 4 & 1) << 2;
+}
+
+int lanePixelY(LaneOrder order, int lane) {
+  if (order == LaneOrder::rows) return lane / kTileSize;
+  return (lane >> 1 & 1) | (lane >> 3 & 1) << 1 | (lane >> 5 & 1) << 2;
+}
+
+TileRays makeRays(const TileTarget& target, LaneOrder order) {
+  const View& view = target.view;
+  TileRays rays{};
+  for (int k = 0; k < kTilePixels; ++k) {
+    rays.laneX[k] = static_cast<float>(lanePixelX(order, k)) + 0.5f;
+    rays.laneY[k] = static_cast<float>(lanePixelY(order, k)) + 0.5f;
+  }
+  rays.perspective = view.projection == Projection::perspective;
+  rays.pixelSize = static_cast<float>(view.pixelSize);
+  rays.nearZ = static_cast<float>(view.nearZ);
+  rays.farZ = static_cast<float>(view.farZ);
+  rays.eyeZ = static_cast<float>(view.distance);
+  const double span = view.nearZ - view.farZ;
+  rays.depthFactor = static_cast<float>((rays.perspective ? view.distance - view.nearZ : 1.0) / span);
+  return rays;
+}
+
+void moveRays(TileRays& rays, const TileTarget& target, int x, int y) {
+  rays.cornerX = x + static_cast<double>(target.sampleShift.x);
+  rays.cornerY = y + static_cast<double>(target.sampleShift.y);
+  rays.slopeX = static_cast<float>((rays.cornerX - target.view.center.x) * target.view.pixelSize);
+  rays.slopeY = static_cast<float>((rays.cornerY - target.view.center.y) * target.view.pixelSize);
+}
+
+namespace {
+
+// Calls f(first pixel in the planes, first in the tile, count) for each row of a tile inside the area.
+template <typename F>
+void forRows(const PixelArea& area, int x, int y, F f) {
+  const int left = std::max(area.x - x, 0), right = std::min(area.x + area.width - x, kTileSize);
+  const int bottom = std::max(area.y - y, 0), top = std::min(area.y + area.height - y, kTileSize);
+  if (left >= right) return;
+  for (int row = bottom; row < top; ++row) {
+    const std::size_t to = static_cast<std::size_t>(y + row - area.y) * static_cast<std::size_t>(area.width) +
+                           static_cast<std::size_t>(x + left - area.x);
+    f(to, static_cast<std::size_t>(row * kTileSize + left), static_cast<std::size_t>(right - left));
+  }
+}
+
+}  // namespace
+
+void storeTile(const TilePixels& pixels, const PixelArea& area, int x, int y, Planes& planes) {
+  forRows(area, x, y, [&](std::size_t to, std::size_t from, std::size_t count) {
+    const auto copy = [&](auto& plane, const auto* tile) {
+      if (!plane.empty()) std::memcpy(plane.data() + to, tile + from, 4 * count);
+    };
+    copy(planes.depth, pixels.depth);
+    copy(planes.albedo, pixels.albedo);
+    copy(planes.normal, pixels.normal);
+    copy(planes.id, pixels.id);
+    copy(planes.distance, pixels.distance);
+  });
+}
+
+void clearTile(const PixelArea& area, int x, int y, Planes& planes) {
+  forRows(area, x, y, [&](std::size_t to, std::size_t, std::size_t count) {
+    const auto fill = [&](auto& plane, auto value) {
+      if (!plane.empty()) std::fill_n(plane.data() + to, count, value);
+    };
+    fill(planes.depth, 0.0f);
+    fill(planes.albedo, 0u);
+    fill(planes.normal, 0u);
+    fill(planes.id, 0u);
+    fill(planes.distance, std::numeric_limits<float>::infinity());
+  });
+}
+
+}  // namespace meniscus::tiles

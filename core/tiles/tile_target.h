@@ -1,0 +1,72 @@
+#pragma once
+// What the tile casters draw and where it goes: a rectangle of a picture as seen from a View, and the planes
+// of a G-buffer in main memory.
+//
+// A picture is cut into square tiles of kTileSize pixels, counted from the picture's own lower left corner,
+// and into blocks of kBlockTiles x kBlockTiles tiles. What a pixel shows depends on its tile alone, so a
+// picture that is drawn in parts has the same bytes as one drawn at once.
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "core/view.h"
+
+namespace meniscus::tiles {
+
+inline constexpr int kTileSize = 8;    ///< pixels; measured: docs/measured/tiles.md
+inline constexpr int kBlockTiles = 8;  ///< tiles along a block's side
+inline constexpr int kTilePixels = kTileSize * kTileSize;
+inline constexpr int kTilesPerBlock = kBlockTiles * kBlockTiles;
+
+/// Pixels of the whole picture: lower left corner and size.
+struct PixelArea {
+  int x = 0, y = 0, width = 0, height = 0;
+  bool operator==(const PixelArea&) const = default;
+};
+
+/// What is drawn at once.
+struct TileTarget {
+  View view;
+  glm::dvec3 origin{0.0};  ///< Primitives::origin
+  PixelArea area;
+  glm::vec2 sampleShift{0.0f};  ///< of every ray within its pixel, at most half a pixel
+};
+
+/// Whether the same primitives make the same lists: all but the shift of the rays is the same.
+bool sameLists(const TileTarget& a, const TileTarget& b);
+
+/// Channels that are wanted; depth always is.
+struct PlaneChannels {
+  bool albedo = true, normal = true, id = true, distance = false;
+  bool operator==(const PlaneChannels&) const = default;
+};
+
+/// The channels of a G-buffer (render/gbuffer.h), rows from the bottom, in the same formats. Those that are
+/// not wanted are empty.
+struct Planes {
+  int width = 0, height = 0;
+  PlaneChannels channels;
+  std::vector<float> depth;           ///< reversed z; 0 = background
+  std::vector<std::uint32_t> albedo;  ///< bytes R, G, B, 255; 0 = background
+  std::vector<std::uint32_t> normal;  ///< octahedral, 16 bits each, x in the lower; 0 = background
+  std::vector<std::uint32_t> id;      ///< 0 = background
+  std::vector<float> distance;        ///< along the unit ray [Å]; +infinity = background
+
+  /// Makes room; contents are not set.
+  void resize(int newWidth, int newHeight, const PlaneChannels& wanted);
+  std::uint64_t bytes() const;
+};
+
+/// The tiles that cover an area, and the blocks that cover the tiles.
+struct TileGrid {
+  int x = 0, y = 0;  ///< pixel of the first tile's lower left corner
+  int columns = 0, rows = 0;
+  int blockColumns = 0, blockRows = 0;
+
+  explicit TileGrid(const PixelArea& area);
+  int blocks() const { return blockColumns * blockRows; }
+};
+
+}  // namespace meniscus::tiles
