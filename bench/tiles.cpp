@@ -19,6 +19,7 @@
 #ifdef MENISCUS_BENCH_EMBREE
 #include "bench/embree_spheres.h"
 #endif
+#include "core/tiles/field_tiles.h"
 #include "core/tiles/instruction_sets.h"
 #include "core/tiles/quadric_tiles.h"
 #include "render/gl/context.h"
@@ -100,6 +101,12 @@ void measure(int atoms, int repetitions) {
   std::map<std::string, std::vector<double>> times;
   Splatting splatting(primitives);
   tiles::QuadricTiles caster;
+  // The exact surface of degree six, its supports twice the radii.
+  MetaballField field;
+  for (const SpherePrimitive& sphere : primitives.spheres)
+    field.balls.push_back({sphere.center, 2 * sphere.radius, 1, sphere.color, sphere.id});
+  tiles::FieldTiles surface;
+  tiles::FieldCounts counts;
   tiles::Planes planes;
   std::size_t hits = 0, embreeHits = 0;
   for (int repetition = -1; repetition < repetitions; ++repetition) {  // the first warms up
@@ -107,6 +114,11 @@ void measure(int atoms, int repetitions) {
     caster.setPrimitives(&primitives);
     now["tiles, all"] = timeMs([&] { caster.cast(target, {}, planes); });
     now["tiles, lists there"] = timeMs([&] { caster.cast(target, {}, planes); });
+    surface.setField(&field);
+    now["surface, all"] = timeMs([&] { surface.cast(target, {}, planes); });
+    surface.takeCounts();
+    now["surface, lists there"] = timeMs([&] { surface.cast(target, {}, planes); });
+    counts = surface.takeCounts();
     if (atoms <= 1000000) now["splat"] = timeMs([&] { splatting.draw(view); });
 #ifdef MENISCUS_BENCH_EMBREE
     const EmbreeTimes embree = castByEmbree(primitives, view);
@@ -118,6 +130,7 @@ void measure(int atoms, int repetitions) {
     if (repetition >= 0)
       for (const auto& [name, ms] : now) times[name].push_back(ms);
   }
+  caster.cast(target, {}, planes);
   for (const float d : planes.depth) hits += d > 0;
   for (const auto& [name, all] : times)
     fmt::print("time,{},\"{}\",{:.2f}\n", primitives.spheres.size(), name, median(all));
@@ -127,6 +140,17 @@ void measure(int atoms, int repetitions) {
       fmt::print("ratio,{},\"{} / tiles, all\",{:.2f}\n", primitives.spheres.size(), other,
                  median(times[other]) / mine);
   }
+  if (times.contains("embree, all"))
+    fmt::print("ratio,{},\"embree, all / surface, all\",{:.2f}\n", primitives.spheres.size(),
+               median(times["embree, all"]) / median(times["surface, all"]));
+  const auto perRay = [&](const char* what, std::uint64_t n) {
+    fmt::print("ray,{},\"{}\",{:.2f}\n", primitives.spheres.size(), what,
+               static_cast<double>(n) / static_cast<double>(counts.rays));
+  };
+  perRay("intervals", counts.intervals);
+  perRay("pieces", counts.pieces);
+  perRay("iterations", counts.iterations);
+  fmt::print("lists,{},\"surface entries\",{}\n", primitives.spheres.size(), surface.lists().entryCount());
   fmt::print("lists,{},\"entries\",{}\n", primitives.spheres.size(), caster.lists().entryCount());
   fmt::print("lists,{},\"MiB\",{:.1f}\n", primitives.spheres.size(),
              static_cast<double>(caster.lists().bytes()) / (1 << 20));

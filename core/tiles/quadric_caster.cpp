@@ -9,7 +9,7 @@
 #define HWY_TARGET_INCLUDE "core/tiles/quadric_caster.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h.
-#include "core/tiles/lanes-inl.h"
+#include "core/tiles/lanes.inl"
 
 HWY_BEFORE_NAMESPACE();
 namespace meniscus::tiles::HWY_NAMESPACE {

@@ -20,7 +20,7 @@ void QuadricTiles::cast(const TileTarget& target, const PlaneChannels& channels,
     valid_ = true;
     ++builds_;
   }
-  planes.resize(target.area.width, target.area.height, channels);
+  planes.resize(lists_.occupied(target.area), channels);
   const TileGrid& grid = lists_.grid();
   tbb::parallel_for(0, grid.blocks(), [&](int b) {
     const TileBlock& block = lists_.block(b);
@@ -30,18 +30,16 @@ void QuadricTiles::cast(const TileTarget& target, const PlaneChannels& channels,
     TileRays rays = makeRays(target, LaneOrder::rows);
     TilePixels pixels;
     for (int t = 0; t < kTilesPerBlock; ++t) {
-      const int column = b % grid.blockColumns * kBlockTiles + t % kBlockTiles,
-                row = b / grid.blockColumns * kBlockTiles + t / kBlockTiles;
-      if (column >= grid.columns || row >= grid.rows) continue;
-      const int x = grid.x + column * kTileSize, y = grid.y + row * kTileSize;
+      const glm::ivec2 corner = grid.corner(b, t);
+      if (corner.x < 0) continue;
       const std::span<const std::uint32_t> list = block.list(t);
       if (list.empty()) {
-        clearTile(target.area, x, y, planes);
+        clearTile(corner.x, corner.y, planes);
         continue;
       }
-      moveRays(rays, target, x, y);
+      moveRays(rays, target, corner.x, corner.y);
       castQuadrics(records, list, lists_.slack(), rays, channels, pixels);
-      storeTile(pixels, target.area, x, y, planes);
+      storeTile(pixels, corner.x, corner.y, planes);
     }
   });
 }

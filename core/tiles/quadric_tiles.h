@@ -1,8 +1,6 @@
 #pragma once
 // Draws the quadrics of Primitives from tile lists, on all processors, by the widest vectors there are.
 
-#include <memory>
-
 #include "core/primitives.h"
 #include "core/tiles/tile_lists.h"
 
@@ -12,8 +10,8 @@ class QuadricTiles {
  public:
   /// What to draw from now on; must outlive the next call.
   void setPrimitives(const Primitives* primitives);
-  /// Fills the planes of target.area. Lists are built again only if something but the sample's shift has
-  /// changed.
+  /// Fills planes of the part of target.area outside of which there is nothing but background (at least one
+  /// pixel). Lists are built again only if something but the sample's shift has changed.
   void cast(const TileTarget& target, const PlaneChannels& channels, Planes& planes);
   const TileLists& lists() const { return lists_; }
   /// How often lists were built.

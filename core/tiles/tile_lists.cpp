@@ -201,6 +201,21 @@ void TileLists::build(const TileSource& source, const TileTarget& target, bool c
   tbb::parallel_for(0, grid_.blocks(), [&](int b) { fillBlock(b, source, cut); });
 }
 
+PixelArea TileLists::occupied(const PixelArea& area) const {
+  constexpr int kBlockSize = kBlockTiles * kTileSize;
+  int x0 = area.x + area.width, y0 = area.y + area.height, x1 = area.x, y1 = area.y;
+  for (int b = 0; b < grid_.blocks(); ++b) {
+    if (block(b).entries.empty()) continue;
+    const glm::ivec2 corner = grid_.corner(b, 0);
+    x0 = std::min(x0, std::max(corner.x, area.x));
+    y0 = std::min(y0, std::max(corner.y, area.y));
+    x1 = std::max(x1, std::min(corner.x + kBlockSize, area.x + area.width));
+    y1 = std::max(y1, std::min(corner.y + kBlockSize, area.y + area.height));
+  }
+  if (x0 >= x1 || y0 >= y1) return {area.x, area.y, 1, 1};
+  return {x0, y0, x1 - x0, y1 - y0};
+}
+
 std::size_t TileLists::entryCount() const {
   std::size_t sum = 0;
   for (const TileBlock& b : blocks_) sum += b.entries.size();

@@ -59,6 +59,8 @@ class TileLists {
   const TileBlock& block(int index) const { return blocks_[static_cast<std::size_t>(index)]; }
   /// How much nearer a later entry of a list can be than an earlier one [Å].
   float slack() const { return bucketDepth_ * 1.001f; }
+  /// The smallest part of an area that holds all blocks with entries; one pixel if none has any.
+  PixelArea occupied(const PixelArea& area) const;
   std::size_t entryCount() const;
   std::uint64_t bytes() const;
 

@@ -28,6 +28,8 @@ TileRays makeRays(const TileTarget& target, LaneOrder order) {
   rays.nearZ = static_cast<float>(view.nearZ);
   rays.farZ = static_cast<float>(view.farZ);
   rays.eyeZ = static_cast<float>(view.distance);
+  rays.eyeZExact = view.distance;
+  rays.pixelSizeExact = view.pixelSize;
   const double span = view.nearZ - view.farZ;
   rays.depthFactor = static_cast<float>((rays.perspective ? view.distance - view.nearZ : 1.0) / span);
   return rays;
@@ -36,8 +38,10 @@ TileRays makeRays(const TileTarget& target, LaneOrder order) {
 void moveRays(TileRays& rays, const TileTarget& target, int x, int y) {
   rays.cornerX = x + static_cast<double>(target.sampleShift.x);
   rays.cornerY = y + static_cast<double>(target.sampleShift.y);
-  rays.slopeX = static_cast<float>((rays.cornerX - target.view.center.x) * target.view.pixelSize);
-  rays.slopeY = static_cast<float>((rays.cornerY - target.view.center.y) * target.view.pixelSize);
+  rays.slopeXExact = (rays.cornerX - target.view.center.x) * target.view.pixelSize;
+  rays.slopeYExact = (rays.cornerY - target.view.center.y) * target.view.pixelSize;
+  rays.slopeX = static_cast<float>(rays.slopeXExact);
+  rays.slopeY = static_cast<float>(rays.slopeYExact);
 }
 
 namespace {
@@ -57,8 +61,8 @@ void forRows(const PixelArea& area, int x, int y, F f) {
 
 }  // namespace
 
-void storeTile(const TilePixels& pixels, const PixelArea& area, int x, int y, Planes& planes) {
-  forRows(area, x, y, [&](std::size_t to, std::size_t from, std::size_t count) {
+void storeTile(const TilePixels& pixels, int x, int y, Planes& planes) {
+  forRows(planes.area, x, y, [&](std::size_t to, std::size_t from, std::size_t count) {
     const auto copy = [&](auto& plane, const auto* tile) {
       if (!plane.empty()) std::memcpy(plane.data() + to, tile + from, 4 * count);
     };
@@ -70,8 +74,8 @@ void storeTile(const TilePixels& pixels, const PixelArea& area, int x, int y, Pl
   });
 }
 
-void clearTile(const PixelArea& area, int x, int y, Planes& planes) {
-  forRows(area, x, y, [&](std::size_t to, std::size_t, std::size_t count) {
+void clearTile(int x, int y, Planes& planes) {
+  forRows(planes.area, x, y, [&](std::size_t to, std::size_t, std::size_t count) {
     const auto fill = [&](auto& plane, auto value) {
       if (!plane.empty()) std::fill_n(plane.data() + to, count, value);
     };

@@ -10,6 +10,7 @@ struct TileRays {
   alignas(64) float laneX[kTilePixels];  ///< pixel coordinates of each ray relative to the corner
   alignas(64) float laneY[kTilePixels];
   double cornerX, cornerY;  ///< the corner in pixels of the picture, with the sample's shift
+  double slopeXExact, slopeYExact, pixelSizeExact, eyeZExact;
   float slopeX, slopeY;     ///< of the ray through the corner (perspective)
   float pixelSize;          ///< at unit depth (perspective) | in Å
   float nearZ, farZ, eyeZ;  ///< view space
@@ -34,9 +35,9 @@ struct TilePixels {
   alignas(64) float distance[kTilePixels];
   alignas(64) std::uint32_t albedo[kTilePixels], normal[kTilePixels], id[kTilePixels];
 };
-/// Copies a tile into the planes of an area; what lies outside is left out.
-void storeTile(const TilePixels& pixels, const PixelArea& area, int x, int y, Planes& planes);
+/// Copies a tile into planes; what lies outside their area is left out. x, y: the tile's lower left corner.
+void storeTile(const TilePixels& pixels, int x, int y, Planes& planes);
 /// The same of a tile that shows the background.
-void clearTile(const PixelArea& area, int x, int y, Planes& planes);
+void clearTile(int x, int y, Planes& planes);
 
 }  // namespace meniscus::tiles

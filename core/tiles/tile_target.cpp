@@ -10,11 +10,10 @@ bool sameLists(const TileTarget& a, const TileTarget& b) {
          v.nearZ == w.nearZ && v.farZ == w.farZ && a.origin == b.origin && a.area == b.area;
 }
 
-void Planes::resize(int newWidth, int newHeight, const PlaneChannels& wanted) {
-  width = newWidth;
-  height = newHeight;
+void Planes::resize(const PixelArea& newArea, const PlaneChannels& wanted) {
+  area = newArea;
   channels = wanted;
-  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  const std::size_t pixels = static_cast<std::size_t>(area.width) * static_cast<std::size_t>(area.height);
   depth.resize(pixels);
   albedo.resize(wanted.albedo ? pixels : 0);
   normal.resize(wanted.normal ? pixels : 0);
@@ -42,5 +41,12 @@ TileGrid::TileGrid(const PixelArea& area)
       rows(ceilDivide(area.y + area.height - y, kTileSize)),
       blockColumns(ceilDivide(columns, kBlockTiles)),
       blockRows(ceilDivide(rows, kBlockTiles)) {}
+
+glm::ivec2 TileGrid::corner(int block, int tile) const {
+  const int column = block % blockColumns * kBlockTiles + tile % kBlockTiles,
+            row = block / blockColumns * kBlockTiles + tile / kBlockTiles;
+  if (column >= columns || row >= rows) return {-1, -1};
+  return {x + column * kTileSize, y + row * kTileSize};
+}
 
 }  // namespace meniscus::tiles

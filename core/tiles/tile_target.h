@@ -43,10 +43,10 @@ struct PlaneChannels {
   bool operator==(const PlaneChannels&) const = default;
 };
 
-/// The channels of a G-buffer (render/gbuffer.h), rows from the bottom, in the same formats. Those that are
-/// not wanted are empty.
+/// The channels of a part of a G-buffer (render/gbuffer.h), rows from the bottom, in the same formats. Those
+/// that are not wanted are empty.
 struct Planes {
-  int width = 0, height = 0;
+  PixelArea area;
   PlaneChannels channels;
   std::vector<float> depth;           ///< reversed z; 0 = background
   std::vector<std::uint32_t> albedo;  ///< bytes R, G, B, 255; 0 = background
@@ -55,7 +55,7 @@ struct Planes {
   std::vector<float> distance;        ///< along the unit ray [Å]; +infinity = background
 
   /// Makes room; contents are not set.
-  void resize(int newWidth, int newHeight, const PlaneChannels& wanted);
+  void resize(const PixelArea& newArea, const PlaneChannels& wanted);
   std::uint64_t bytes() const;
 };
 
@@ -67,6 +67,9 @@ struct TileGrid {
 
   explicit TileGrid(const PixelArea& area);
   int blocks() const { return blockColumns * blockRows; }
+  /// Pixel coordinates of a tile's lower left corner, by its block and its place in the block; {-1, -1}
+  /// outside of the grid.
+  glm::ivec2 corner(int block, int tile) const;
 };
 
 }  // namespace meniscus::tiles

@@ -4,3 +4,4 @@ meniscus_test(NAME core_test LABEL unit
   LIBRARIES meniscus_render meniscus_core)
 meniscus_test(NAME tiles_test LABEL unit SOURCES tiles_test.cpp ${PROJECT_SOURCE_DIR}/tests/support/scenes.cpp
               LIBRARIES meniscus_core)
+meniscus_test(NAME field_tiles_test LABEL unit SOURCES field_tiles_test.cpp LIBRARIES meniscus_core)

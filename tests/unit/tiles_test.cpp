@@ -23,12 +23,36 @@ TileTarget targetOf(const Primitives& primitives, const View& view, glm::vec2 sh
   return {view, primitives.origin, {0, 0, view.size.width, view.size.height}, shift};
 }
 
+// Planes of the whole area, background where there was nothing.
+Planes spread(const Planes& part, const TileTarget& target) {
+  Planes whole;
+  whole.resize(target.area, kAll);
+  const TileGrid grid(target.area);
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column)
+      clearTile(grid.x + column * kTileSize, grid.y + row * kTileSize, whole);
+  }
+  for (int y = 0; y < part.area.height; ++y) {
+    for (int x = 0; x < part.area.width; ++x) {
+      const auto from = static_cast<std::size_t>(y * part.area.width + x);
+      const auto to = static_cast<std::size_t>((y + part.area.y - target.area.y) * target.area.width + x +
+                                               part.area.x - target.area.x);
+      whole.depth[to] = part.depth[from];
+      whole.albedo[to] = part.albedo[from];
+      whole.normal[to] = part.normal[from];
+      whole.id[to] = part.id[from];
+      whole.distance[to] = part.distance[from];
+    }
+  }
+  return whole;
+}
+
 Planes castByLists(const Primitives& primitives, const TileTarget& target) {
   QuadricTiles caster;
   caster.setPrimitives(&primitives);
   Planes planes;
   caster.cast(target, kAll, planes);
-  return planes;
+  return spread(planes, target);
 }
 
 // Every tile's rays against every primitive.
@@ -44,7 +68,7 @@ Planes castByForce(const Primitives& primitives, const TileTarget& target) {
   std::vector<std::uint32_t> list(records.size());
   std::iota(list.begin(), list.end(), 0u);
   Planes planes;
-  planes.resize(target.area.width, target.area.height, kAll);
+  planes.resize(target.area, kAll);
   const TileGrid grid(target.area);
   TileRays rays = makeRays(target, LaneOrder::rows);
   TilePixels pixels;
@@ -53,7 +77,7 @@ Planes castByForce(const Primitives& primitives, const TileTarget& target) {
       const int x = grid.x + column * kTileSize, y = grid.y + row * kTileSize;
       moveRays(rays, target, x, y);
       castQuadrics(records, list, std::numeric_limits<float>::infinity(), rays, kAll, pixels);
-      storeTile(pixels, target.area, x, y, planes);
+      storeTile(pixels, x, y, planes);
     }
   }
   return planes;
@@ -140,7 +164,8 @@ TEST_P(Tiles, ListsAreBuiltOncePerView) {
   Planes planes;
   for (const glm::vec2 shift : {glm::vec2(0, 0), glm::vec2(0.4f, -0.4f), glm::vec2(-0.5f, 0.5f)}) {
     caster.cast(targetOf(*primitives, view, shift), kAll, planes);
-    expectSame(planes, castByForce(*primitives, targetOf(*primitives, view, shift)), "kept lists");
+    const TileTarget target = targetOf(*primitives, view, shift);
+    expectSame(spread(planes, target), castByForce(*primitives, target), "kept lists");
   }
   EXPECT_EQ(caster.builds(), 1);
   View closer = view;

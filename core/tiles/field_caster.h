@@ -1,0 +1,59 @@
+#pragma once
+// Casts the rays of a tile into its list of metaballs, by the widest vectors that the processor has.
+
+#include <cstdint>
+#include <span>
+
+#include "core/tiles/metaball_source.h"
+#include "core/tiles/tile_rays.h"
+
+namespace meniscus::tiles {
+
+/// Of all rays together.
+struct FieldCounts {
+  std::uint64_t rays = 0;            ///< that met a support
+  std::uint64_t intervals = 0;       ///< between two entries or exits, looked at by a bound of the field
+  std::uint64_t pieces = 0;          ///< polynomials written down
+  std::uint64_t iterations = 0;      ///< of the root finder
+  std::uint64_t mostIterations = 0;  ///< of one ray
+  std::uint64_t splits = 0;          ///< intervals halved because several roots were possible
+  std::uint64_t grazing = 0;         ///< rays with an interval that could not be split any more
+  std::uint64_t notConverged = 0;
+  std::uint64_t windowGrowths = 0;  ///< lists of balls on a ray that had to become longer
+  void add(const FieldCounts& other);
+};
+
+struct FieldTile {
+  const MetaballField* field = nullptr;
+  double largestSupport = 0;  ///< sets the absolute tolerance
+  std::span<const BallRecord> records;
+  std::span<const std::uint32_t> list;  ///< indices into records, nearest bucket first
+  float slack = 0;                      ///< of TileLists
+  bool cut = false;                     ///< the list ends where cores hide what follows
+};
+
+/// rays: of LaneOrder::squares. What is wanted of `out` is written in rows, background included. Returns
+/// whether it could be done: a ray that begins inside the surface sees its far wall, for which a cut list
+/// does not do.
+bool castField(const FieldTile& tile, const TileRays& rays, const PlaneChannels& channels, TilePixels& out,
+               FieldCounts& counts);
+
+/// The chords of a packet of rays that may still matter, and room for as many as it takes.
+class ChordWindow {
+ public:
+  explicit ChordWindow(std::size_t lanes);
+  ~ChordWindow();
+  ChordWindow(const ChordWindow&) = delete;
+  ChordWindow& operator=(const ChordWindow&) = delete;
+  void grow();
+
+  std::size_t capacity = 0;
+  float *middle = nullptr, *half2 = nullptr, *enter = nullptr, *leave = nullptr;  // a vector for each chord
+  float *inverse2 = nullptr, *coefficient = nullptr;                              // a number for each chord
+
+ private:
+  std::size_t lanes_;
+  void* memory_ = nullptr;
+};
+
+}  // namespace meniscus::tiles

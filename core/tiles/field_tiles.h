@@ -1,0 +1,31 @@
+#pragma once
+// Draws a metaball field from tile lists, on all processors, by the widest vectors there are: exact, with no
+// limit on how many balls overlap or how deep the scene is.
+
+#include "core/tiles/field_caster.h"
+#include "core/tiles/tile_lists.h"
+
+namespace meniscus::tiles {
+
+class FieldTiles {
+ public:
+  /// What to draw from now on; must outlive the next call.
+  void setField(const MetaballField* field);
+  /// As QuadricTiles::cast().
+  void cast(const TileTarget& target, const PlaneChannels& channels, Planes& planes);
+  const TileLists& lists() const { return lists_; }
+  int builds() const { return builds_; }
+  /// Of all calls since the last one.
+  FieldCounts takeCounts();
+
+ private:
+  const MetaballField* field_ = nullptr;
+  TileLists lists_;
+  TileLists whole_;  // not cut: for tiles in which a ray begins inside the surface
+  TileTarget listed_;
+  FieldCounts counts_;
+  bool valid_ = false, wholeValid_ = false;
+  int builds_ = 0;
+};
+
+}  // namespace meniscus::tiles

@@ -1,0 +1,55 @@
+#include <algorithm>
+#include <cstring>
+#include <new>
+
+#include "core/tiles/field_caster.h"
+
+namespace meniscus::tiles {
+
+namespace {
+constexpr std::size_t kFirstCapacity = 128;
+constexpr std::align_val_t kAlignment{64};
+}  // namespace
+
+void FieldCounts::add(const FieldCounts& other) {
+  rays += other.rays;
+  intervals += other.intervals;
+  pieces += other.pieces;
+  iterations += other.iterations;
+  mostIterations = std::max(mostIterations, other.mostIterations);
+  splits += other.splits;
+  grazing += other.grazing;
+  notConverged += other.notConverged;
+  windowGrowths += other.windowGrowths;
+}
+
+ChordWindow::ChordWindow(std::size_t lanes) : lanes_(lanes) {
+  grow();
+}
+
+ChordWindow::~ChordWindow() {
+  ::operator delete(memory_, kAlignment);
+}
+
+void ChordWindow::grow() {
+  const std::size_t larger = capacity == 0 ? kFirstCapacity : 2 * capacity;
+  auto* const memory =
+      static_cast<float*>(::operator new(larger*(4 * lanes_ + 2) * sizeof(float), kAlignment));
+  float* next = memory;
+  const auto move = [&](float*& array, std::size_t perChord) {
+    if (capacity > 0) std::memcpy(next, array, capacity * perChord * sizeof(float));
+    array = next;
+    next += larger * perChord;
+  };
+  move(middle, lanes_);
+  move(half2, lanes_);
+  move(enter, lanes_);
+  move(leave, lanes_);
+  move(inverse2, 1);
+  move(coefficient, 1);
+  ::operator delete(memory_, kAlignment);
+  memory_ = memory;
+  capacity = larger;
+}
+
+}  // namespace meniscus::tiles

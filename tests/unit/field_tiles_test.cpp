@@ -1,0 +1,211 @@
+// Metaballs cast from tiles against the double-precision truth, against uncut lists, and by every instruction
+// set and in every cutting of the picture to the same bits.
+
+#include "core/tiles/field_tiles.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "core/hit_errors.h"
+#include "core/reference_tracer.h"
+#include "core/shared_math.h"
+#include "core/tiles/instruction_sets.h"
+#include "tests/support/exact_field.h"
+#include "tests/support/random.h"
+
+namespace meniscus::tiles {
+namespace {
+
+constexpr PlaneChannels kAll{true, true, true, true};
+const glm::dvec3 kOrigin(-4, 17, 3);
+
+struct Case {
+  const char* name;
+  Kernel kernel;
+  double level;
+  int hollow;  ///< every so many balls one takes away
+};
+const Case kCases[] = {{"sextic", {KernelShape::sextic}, 0.5, 0},
+                       {"sextic, hollow", {KernelShape::sextic}, 0.2, 3},
+                       {"quartic", {KernelShape::quartic}, 0.5, 0},
+                       {"quartic, hollow", {KernelShape::quartic}, 0.3, 2},
+                       {"power 2, hollow", {KernelShape::power, 2}, 0.1, 3},
+                       {"power 3", {KernelShape::power, 3}, 0.4, 0},
+                       {"power 7, hollow", {KernelShape::power, 7}, 0.05, 3},
+                       {"power 16", {KernelShape::power, 16}, 0.02, 0},
+                       {"power 16, hollow", {KernelShape::power, 16}, 0.01, 3}};
+
+TileTarget targetOf(const View& view) {
+  return {view, kOrigin, {0, 0, view.size.width, view.size.height}, {0, 0}};
+}
+
+// The whole picture as data.
+HitImage cast(const MetaballField& field, const TileTarget& target, FieldCounts* counts = nullptr,
+              std::vector<std::uint32_t>* albedo = nullptr) {
+  FieldTiles caster;
+  caster.setField(&field);
+  Planes planes;
+  caster.cast(target, kAll, planes);
+  if (counts != nullptr) *counts = caster.takeCounts();
+  HitImage image;
+  image.size = {target.area.width, target.area.height};
+  const auto pixels = static_cast<std::size_t>(target.area.width * target.area.height);
+  image.distance.assign(pixels, std::numeric_limits<float>::infinity());
+  image.id.assign(pixels, 0);
+  image.normal.assign(pixels, glm::vec3(0.0f));
+  if (albedo != nullptr) albedo->assign(pixels, 0);
+  for (int y = 0; y < planes.area.height; ++y) {
+    for (int x = 0; x < planes.area.width; ++x) {
+      const auto from = static_cast<std::size_t>(y * planes.area.width + x);
+      const auto to = static_cast<std::size_t>((y + planes.area.y - target.area.y) * target.area.width + x +
+                                               planes.area.x - target.area.x);
+      EXPECT_EQ(planes.depth[from] > 0, planes.id[from] != 0);
+      if (!(planes.depth[from] > 0)) continue;
+      image.distance[to] = planes.distance[from];
+      image.id[to] = planes.id[from];
+      const std::uint32_t n = planes.normal[from];
+      image.normal[to] = f32::decodeNormal(glm::vec2(n & 0xFFFFu, n >> 16) / 65535.0f);
+      if (albedo != nullptr) (*albedo)[to] = planes.albedo[from];
+    }
+  }
+  return image;
+}
+
+void expectTrue(const MetaballField& field, const View& view, const char* what) {
+  const ReferenceImage truth = traceReference(field, kOrigin, view);
+  FieldCounts counts;
+  const HitErrors errors = compareHits(cast(field, targetOf(view), &counts), truth);
+  EXPECT_EQ(errors.missed, 0u) << what;
+  EXPECT_EQ(errors.falseHits, 0u) << what;
+  EXPECT_LE(errors.relativeRms, 1e-5) << what;
+  EXPECT_LE(errors.normalRmsDeg, 0.02) << what;
+  EXPECT_LE(errors.idsDiffer, errors.compared / 1000 + 1) << what;
+  EXPECT_EQ(counts.notConverged, 0u) << what;
+  EXPECT_GT(errors.compared, 100u) << what;
+}
+
+class FieldTilesTest : public testing::TestWithParam<Projection> {
+ protected:
+  void TearDown() override { useInstructionSet(""); }
+};
+INSTANTIATE_TEST_SUITE_P(Projections, FieldTilesTest,
+                         testing::Values(Projection::perspective, Projection::orthographic),
+                         [](const auto& each) {
+                           return each.param == Projection::perspective ? "perspective" : "orthographic";
+                         });
+
+TEST_P(FieldTilesTest, HitsAreTheTruth) {
+  unsigned seed = 100;
+  for (const Case& c : kCases) {
+    const MetaballField field = test::randomField(c.kernel, c.level, 60, 6, c.hollow, ++seed);
+    expectTrue(field, test::viewOfBall(GetParam(), {120, 90}, kOrigin, 15), c.name);
+  }
+}
+
+TEST_P(FieldTilesTest, HitsAreTheTruthWhereTheNearPlaneCuts) {
+  unsigned seed = 200;
+  for (const Case& c : kCases) {
+    const MetaballField field = test::randomField(c.kernel, c.level, 60, 6, c.hollow, ++seed);
+    View view = test::viewOfBall(GetParam(), {80, 60}, kOrigin, 15);
+    view.nearZ = 0;
+    expectTrue(field, view, c.name);
+  }
+}
+
+TEST_P(FieldTilesTest, HitsAreTheTruthFromWithin) {
+  test::Random random(3);
+  for (int i = 0; i < 6; ++i) {
+    const MetaballField field = test::randomField({KernelShape::sextic}, 0.3, 60, 6, i % 2 == 0 ? 0 : 3,
+                                                  300u + static_cast<unsigned>(i));
+    Camera camera;
+    camera.projection = GetParam();
+    camera.orientation = random.rotation();
+    camera.target = kOrigin + random.inBox(3);
+    camera.distance = random.logUniform(0.01, 3);
+    camera.fovY = random.uniform(0.5, 2);
+    const View view = makeView(camera, {60, 50}, {kOrigin, 15});
+    const ReferenceImage truth = traceReference(field, kOrigin, view);
+    const HitErrors errors = compareHits(cast(field, targetOf(view)), truth);
+    EXPECT_EQ(errors.missed, 0u) << i;
+    EXPECT_EQ(errors.falseHits, 0u) << i;
+    EXPECT_LE(errors.relativeRms, 1e-5) << i;
+  }
+}
+
+TEST_P(FieldTilesTest, InstructionSetsGiveTheSameBits) {
+  for (const Case& c : {kCases[1], kCases[2], kCases[6]}) {
+    const MetaballField field = test::randomField(c.kernel, c.level, 200, 9, c.hollow, 5);
+    const View view = test::viewOfBall(GetParam(), {130, 100}, kOrigin, 20);
+    std::vector<std::uint32_t> albedo, other;
+    const HitImage widest = cast(field, targetOf(view), nullptr, &albedo);
+    for (const std::string& set : instructionSets()) {
+      useInstructionSet(set);
+      const HitImage image = cast(field, targetOf(view), nullptr, &other);
+      EXPECT_EQ(image.distance, widest.distance) << set << ' ' << c.name;
+      EXPECT_EQ(image.id, widest.id) << set << ' ' << c.name;
+      EXPECT_EQ(image.normal, widest.normal) << set << ' ' << c.name;
+      EXPECT_EQ(other, albedo) << set << ' ' << c.name;
+    }
+    useInstructionSet("");
+  }
+}
+
+TEST_P(FieldTilesTest, AreasGiveTheSameBits) {
+  const MetaballField field = test::randomField({KernelShape::sextic}, 0.5, 100, 7, 4, 9);
+  const View view = test::viewOfBall(GetParam(), {100, 90}, kOrigin, 17);
+  const HitImage whole = cast(field, targetOf(view));
+  for (int y = 0; y < 90; y += 37) {
+    for (int x = 0; x < 100; x += 37) {
+      TileTarget target = targetOf(view);
+      target.area = {x, y, std::min(37, 100 - x), std::min(37, 90 - y)};
+      const HitImage part = cast(field, target);
+      for (int row = 0; row < target.area.height; ++row) {
+        for (int column = 0; column < target.area.width; ++column) {
+          const auto here = static_cast<std::size_t>(row * target.area.width + column),
+                     there = static_cast<std::size_t>((y + row) * 100 + x + column);
+          ASSERT_EQ(part.distance[here], whole.distance[there]);
+          ASSERT_EQ(part.id[here], whole.id[there]);
+        }
+      }
+    }
+  }
+}
+
+// Thousands of balls in one place: the window holds 128 at first and grows.
+TEST_P(FieldTilesTest, AnyNumberOfBallsMayOverlap) {
+  MetaballField field;
+  field.level = 300;
+  test::Random random(1);
+  for (std::uint32_t i = 1; i <= 1000; ++i)
+    field.balls.push_back({glm::vec3(random.inBox(1)), 4, 1, 0xFFFFFF, i});
+  const View view = test::viewOfBall(GetParam(), {24, 16}, kOrigin, 5);
+  FieldCounts counts;
+  const HitErrors errors =
+      compareHits(cast(field, targetOf(view), &counts), traceReference(field, kOrigin, view));
+  EXPECT_EQ(errors.missed + errors.falseHits, 0u);
+  EXPECT_LE(errors.relativeRms, 1e-5);
+}
+
+// A ball of one colour beside one of another: between them the colour is in between, by squares.
+TEST(FieldTilesColor, IsBlendedBySquares) {
+  MetaballField field;
+  field.level = 0.5;
+  const View view = test::viewOfBall(Projection::orthographic, {101, 101}, kOrigin, 6);
+  const glm::vec3 right(glm::transpose(view.rotation) * glm::dvec3(1, 0, 0));
+  field.balls = {{-right, 4, 1, 0xFF0000, 1}, {right, 4, 1, 0x0000FF, 2}};
+  std::vector<std::uint32_t> albedo;
+  const HitImage image = cast(field, targetOf(view), nullptr, &albedo);
+  const auto middle = static_cast<std::size_t>(50 * 101 + 50);
+  ASSERT_NE(image.id[middle], 0u);
+  EXPECT_NEAR(static_cast<int>(albedo[middle] & 0xFFu), std::lround(255 * std::sqrt(0.5)), 2);
+  EXPECT_NEAR(static_cast<int>(albedo[middle] >> 16 & 0xFFu), std::lround(255 * std::sqrt(0.5)), 2);
+  EXPECT_EQ(albedo[middle] >> 8 & 0xFFu, 0u);
+  EXPECT_EQ(albedo[middle] >> 24, 0xFFu);
+}
+
+}  // namespace
+}  // namespace meniscus::tiles
