@@ -334,6 +334,7 @@ void RenderRun::drawPicture(const std::string& file, const std::string& output, 
   settings.depthUnsharp = options_.depthUnsharp;
   settings.fog = options_.fog;
   settings.surface = options_.surface;
+  settings.quadrics = options_.quadrics;
   progress_.start(fmt::format("{} -> {}", file, output));
   Renderer& draw = renderer();
   draw.setPrimitives(std::move(primitives));

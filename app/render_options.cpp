@@ -28,8 +28,8 @@ constexpr const char* kExamples =
     "      --carbons chain --focus '(HEM)' --size 1920x1080 --background transparent\n"
     "  meniscus render models/*.pdb -o 'pictures/{stem}-{model}.png' --model all --color rainbow\n";
 
-constexpr std::array<std::string_view, 7> kNotForThePicture{"output",  "stats",      "explain", "quiet",
-                                                            "backend", "shader-dir", "help"};
+constexpr std::array<std::string_view, 8> kNotForThePicture{"output",  "stats",    "explain",    "quiet",
+                                                            "backend", "quadrics", "shader-dir", "help"};
 
 std::string shellQuoted(const std::string& text) {
   const auto plain = [](char c) {
@@ -336,6 +336,16 @@ void addOtherOptions(CLI::App& app, RenderOptions& o) {
               [&o](auto& n, auto& v) {
                 o.backend = parseChoice<Backend>(
                     n, v, {{"auto", Backend::automatic}, {"egl", Backend::egl}, {"osmesa", Backend::osmesa}});
+              });
+  group.value("--quadrics", "splat|tiles|auto",
+              "Spheres, cylinders and ellipsoids drawn by the GPU, a\n"
+              "rectangle each (splat), or by the processor (tiles) [auto:\n"
+              "tiles where there is no GPU]; the picture is the same",
+              [&o](auto& n, auto& v) {
+                o.quadrics = parseChoice<QuadricMethod>(n, v,
+                                                        {{"splat", QuadricMethod::splat},
+                                                         {"tiles", QuadricMethod::tiles},
+                                                         {"auto", QuadricMethod::automatic}});
               });
   group.flag("--explain",
              "Print what was drawn, what was left out and why, and what\n"

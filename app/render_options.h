@@ -53,6 +53,7 @@ struct RenderOptions {
   double dpi = 0;    ///< 0 = not written
 
   Backend backend = Backend::automatic;
+  QuadricMethod quadrics = QuadricMethod::automatic;
   std::filesystem::path shaderDir;
   bool explain = false;
   std::string statsFile;

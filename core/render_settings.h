@@ -72,6 +72,13 @@ struct OcclusionSettings {
   bool operator==(const OcclusionSettings&) const = default;
 };
 
+/// How spheres, cylinders and ellipsoids are drawn.
+enum class QuadricMethod : std::uint8_t {
+  splat,     ///< a rectangle for each, by the GPU (render/quadrics.h)
+  tiles,     ///< from tile lists, by the processor (render/tile_quadrics.h)
+  automatic  ///< tiles where OpenGL itself runs on the processor, else splat
+};
+
 /// How metaball surfaces are drawn; which methods and parameters there are: render/surface_method.h.
 struct SurfaceSettings {
   std::string method = "auto";
@@ -87,6 +94,7 @@ struct RenderSettings {
   SilhouetteSettings lines;
   DepthUnsharpSettings depthUnsharp;
   FogSettings fog;
+  QuadricMethod quadrics = QuadricMethod::automatic;
   SurfaceSettings surface;
   bool operator==(const RenderSettings&) const = default;
 };

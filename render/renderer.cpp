@@ -19,6 +19,7 @@
 #include "render/post/silhouette.h"
 #include "render/quadrics.h"
 #include "render/surface_passes.h"
+#include "render/tile_quadrics.h"
 #include "render/view_block.h"
 
 namespace meniscus {
@@ -108,6 +109,8 @@ struct Renderer::Impl {
   ShaderLibrary shaders;
   TexturePool pool;
   QuadricBuffers quadrics;
+  TileQuadrics tileQuadrics;
+  QuadricChoice quadricChoice;
   SurfacePasses surfaces;
   ShadeUniforms shadeUniforms;
   ShadowUniforms shadowUniforms;
@@ -119,16 +122,18 @@ struct Renderer::Impl {
   RenderStats stats;
 
   explicit Impl(const RendererOptions& o) : options(o), shaders(o.shaderDir) {
+    tileQuadrics.setPrimitives(primitives);
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     glDisable(GL_DITHER);
     glDisable(GL_MULTISAMPLE);
   }
 
-  void prepare(const SurfaceSettings& surface) {
+  void prepare(QuadricMethod method, const SurfaceSettings& surface) {
     if (!options.shaderDir.empty()) shaders.reloadIfChanged();
     stats.omissions.clear();  // of an earlier picture
     Stopwatch watch(stats.uploadMs);
-    quadrics.upload(*primitives);
+    quadricChoice = chooseQuadrics(method);
+    if (!quadricChoice.tiles) quadrics.upload(*primitives);
     surfaces.prepare(primitives, surface);
     if (!viewUniforms.object) viewUniforms = gl::Buffer::updatable(sizeof(f32::ViewBlock));
   }
@@ -142,8 +147,25 @@ struct Renderer::Impl {
   // All that is to be seen, into the channels of a G-buffer. setView() must have been called alike.
   void addScene(FrameGraph& graph, const View& view, const Tile& tile, glm::vec2 sampleShift,
                 const GBufferRefs& gbuffer, const std::string& prefix = {}) {
-    addQuadrics(graph, quadrics, shaders, gbuffer, prefix);
+    if (quadricChoice.tiles) {
+      tileQuadrics.add(graph, view, tile, sampleShift, gbuffer, prefix);
+    } else {
+      addQuadrics(graph, quadrics, shaders, gbuffer, prefix);
+    }
+    leaveOutOtherQuadrics(graph, prefix);
     surfaces.add(graph, shaders, {view, primitives->origin, tile, sampleShift, gbuffer, prefix});
+  }
+
+  void leaveOutOtherQuadrics(FrameGraph& graph, const std::string& prefix) {
+    if (!quadricChoice.tiles) {
+      graph.leaveOut("pass " + prefix + "tiles", "quadrics are splatted: " + quadricChoice.reason);
+      return;
+    }
+    for (const auto& [name, none] : {std::pair{"spheres", primitives->spheres.empty()},
+                                     std::pair{"cylinders", primitives->cylinders.empty()},
+                                     std::pair{"ellipsoids", primitives->ellipsoids.empty()}}) {
+      graph.leaveOut("pass " + prefix + name, none ? "the scene has none" : quadricChoice.reason);
+    }
   }
 
   // One sample of one tile: every pass of the program is named here.
@@ -197,6 +219,7 @@ void Renderer::setPrimitives(std::shared_ptr<const Primitives> primitives) {
   impl_->surfaces.takeStats(impl_->stats.surfaces);
   impl_->surfaces.clear();
   impl_->quadrics.clear();
+  impl_->tileQuadrics.setPrimitives(impl_->primitives);
   impl_->occlusionBuffers.clear();
   impl_->silhouetteUniforms.clearGroups();
   impl_->pool.trim();
@@ -315,7 +338,7 @@ void Renderer::renderPicture(const View& view, const Lighting& lighting, const B
   MENISCUS_CHECK(settings.samples >= 1 && settings.samples <= kMaxSamples);
   MENISCUS_CHECK(!layout.layers.data() || layout.format == PixelFormat::rgbaFloat);
   Impl& r = *impl_;
-  r.prepare(settings.surface);
+  r.prepare(settings.quadrics, settings.surface);
   Frame frame{view,
               settings,
               {lighting, background, settings.occlusion, settings.fog, settings.depthUnsharp, settings.lines,
@@ -385,9 +408,10 @@ void Renderer::renderPicture(const View& view, const Lighting& lighting, const B
   }
 }
 
-HitImage Renderer::renderHits(const View& view, HitChannels channels, const SurfaceSettings& surface) {
+HitImage Renderer::renderHits(const View& view, HitChannels channels, const SurfaceSettings& surface,
+                              QuadricMethod quadrics) {
   Impl& r = *impl_;
-  r.prepare(surface);
+  r.prepare(quadrics, surface);
   const int width = view.size.width, height = view.size.height;
   const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   HitImage image;

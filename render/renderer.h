@@ -42,7 +42,8 @@ class Renderer {
                      const std::function<void(double)>& progress = {});
 
   /// Draws what the rays through the pixels' centres meet: no shading, nothing that was not asked for.
-  HitImage renderHits(const View& view, HitChannels channels, const SurfaceSettings& surface = {});
+  HitImage renderHits(const View& view, HitChannels channels, const SurfaceSettings& surface = {},
+                      QuadricMethod quadrics = QuadricMethod::automatic);
 
   RenderStats stats() const;
 

@@ -6,12 +6,14 @@
 
 #include "core/error.h"
 #include "render/surface/bezier.h"
+#include "render/surface/tiles.h"
 #include "render/surface_method.h"
 
 namespace meniscus {
 
 std::span<const SurfaceMethodInfo> surfaceMethods() {
   static const SurfaceMethodInfo kMethods[] = {
+      {"tiles", "exact, by the processor, from lists of each screen tile (docs/methods.md)", {}, makeTiles},
       {"bezier", "depth-peeled Bezier clipping (Kanamori, Szego and Nishita 2008)", bezierParameters(),
        makeBezier},
   };

@@ -119,6 +119,12 @@ std::uint64_t Texture::bytes() const {
          static_cast<std::uint64_t>(bytesPerTexel(desc.format));
 }
 
+void Texture::write(int width, int height, const void* data, int x, int y) const {
+  const FormatInfo info = infoOf(desc.format);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTextureSubImage2D(object.name(), 0, x, y, width, height, info.format, info.type, data);
+}
+
 void Texture::read(int width, int height, int rowTexels, void* out, int x, int y) const {
   const FormatInfo info = infoOf(desc.format);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
@@ -137,6 +143,14 @@ Limits queryLimits() {
   limits.viewportWidth = viewport[0];
   limits.viewportHeight = viewport[1];
   return limits;
+}
+
+Device queryDevice() {
+  const GLubyte* text = glGetString(GL_RENDERER);
+  Device device{text != nullptr ? reinterpret_cast<const char*>(text) : "", false};
+  for (const char* name : {"llvmpipe", "softpipe", "swrast", "SWR", "Software Rasterizer", "SwiftShader"})
+    device.software = device.software || device.name.find(name) != std::string::npos;
+  return device;
 }
 
 }  // namespace meniscus::gl

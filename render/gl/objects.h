@@ -74,6 +74,9 @@ struct Texture {
 
   static Texture make(const TextureDesc& desc);
   std::uint64_t bytes() const;
+  /// Replaces width x height texels from (x, y) on: rows from the bottom, in the format's own component
+  /// types.
+  void write(int width, int height, const void* data, int x, int y) const;
   /// Reads width x height texels from (x, y) on, rows from the bottom, `rowTexels` apart in memory, in the
   /// format's own component types. `out` must have room.
   void read(int width, int height, int rowTexels, void* out, int x = 0, int y = 0) const;
@@ -85,5 +88,12 @@ struct Limits {
   int viewportWidth = 0, viewportHeight = 0;
 };
 Limits queryLimits();
+
+/// What draws.
+struct Device {
+  std::string name;       ///< GL_RENDERER
+  bool software = false;  ///< OpenGL runs on the processor
+};
+Device queryDevice();
 
 }  // namespace meniscus::gl

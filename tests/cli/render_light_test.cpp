@@ -35,8 +35,8 @@ TEST_F(RenderLight, shadowsDarkenAndCostNothingWhenOff) {
       << "the same command, the same picture";
 
   using Names = std::vector<std::string>;
-  EXPECT_EQ(passes(stats(kProtein)), (Names{"spheres", "shade"}));
-  EXPECT_EQ(passes(stats(kProtein, {"--shadows", "hard"})),
+  EXPECT_EQ(passes(stats(kProtein, {"--quadrics", "splat"})), (Names{"spheres", "shade"}));
+  EXPECT_EQ(passes(stats(kProtein, {"--shadows", "hard", "--quadrics", "splat"})),
             (Names{"shadow map: spheres", "spheres", "shadow", "shade"}));
 }
 
@@ -63,7 +63,7 @@ TEST_F(RenderLight, occlusionDarkensByRadiusAndStrength) {
   EXPECT_LT(light({"--occlusion-radius", "0"}), light({}));
   EXPECT_LT(light({}), light({"--occlusion-radius", "4"}));
   EXPECT_NEAR(light({"--occlusion-directions", "128"}), light({"--occlusion-directions", "32"}), 0.01);
-  EXPECT_EQ(passes(stats(kProtein, {"--occlusion", "on"})),
+  EXPECT_EQ(passes(stats(kProtein, {"--occlusion", "on", "--quadrics", "splat"})),
             (std::vector<std::string>{"occlusion maps", "spheres", "occlusion", "shade"}));
 }
 

@@ -35,7 +35,8 @@ TEST_F(RenderLines, outlinesDarkenAndCostNothingWhenOff) {
   EXPECT_EQ(pixels({"--outlines", "chains,residues"}), pixels({"--outlines", "residues"}));
   EXPECT_LT(brightness({"--outlines", "chains"}), off);
 
-  const auto names = [this](const Options& options) {
+  const auto names = [this](Options options) {
+    options.insert(options.end(), {"--quadrics", "splat"});
     std::vector<std::string> out;
     const nlohmann::json report = stats(kProtein, options);
     for (const auto& pass : report.at("passes")) out.push_back(pass.at("name"));

@@ -210,17 +210,17 @@ TEST_F(Effects, OnlyWhatIsAskedForRuns) {
     return std::array{stats.passes.size(), stats.programs.size(), stats.textures.size()};
   };
   using Counts = std::array<std::size_t, 3>;
-  const Counts off = counts(test::withSamples(1));
+  const Counts off = counts(test::withSamples(1, QuadricMethod::splat));
   EXPECT_EQ(off, (Counts{3, 3, 4}));
-  RenderSettings settings = test::withSamples(1);
+  RenderSettings settings = test::withSamples(1, QuadricMethod::splat);
   settings.fog.strength = 0.5;
   EXPECT_EQ(counts(settings), off);
-  settings = test::withSamples(1);
+  settings = test::withSamples(1, QuadricMethod::splat);
   settings.lines.silhouettes = true;
   EXPECT_EQ(counts(settings), (Counts{5, 5, 6}));
   settings.lines.groups = LineGroups::atoms;
   EXPECT_EQ(counts(settings), (Counts{5, 5, 7})) << "ids, too";
-  settings = test::withSamples(1);
+  settings = test::withSamples(1, QuadricMethod::splat);
   settings.depthUnsharp.mode = UnsharpMode::halo;
   EXPECT_EQ(counts(settings)[0], 7u);
 }

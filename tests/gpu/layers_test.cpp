@@ -212,7 +212,7 @@ TEST_F(LayersTest, WhatIsNotAskedForIsNotComputed) {
   const auto statsOf = [&](const Layers& layers, int samples) {
     Renderer renderer;
     renderer.setPrimitives(scene);
-    draw(renderer, view, layers, samples);
+    draw(renderer, view, layers, test::withSamples(samples, QuadricMethod::splat));
     return renderer.stats();
   };
   const auto passesOf = [](const RenderStats& stats) {
@@ -242,10 +242,11 @@ TEST_F(LayersTest, EffectsChangeTheColourOnly) {
   settings.shadows.mode = ShadowMode::soft;
   settings.lines.silhouettes = true;
   const ReadBack plain = draw(whole, view, kData, 1);
+  const RenderStats plainStats = whole.stats();
   Renderer dataOnly;
   dataOnly.setPrimitives(scene);
   EXPECT_EQ(draw(dataOnly, view, kData, settings).pixels, plain.pixels);
-  EXPECT_EQ(dataOnly.stats().passes.size(), 2u) << "no effect is computed for data";
+  EXPECT_EQ(dataOnly.stats().passes.size(), plainStats.passes.size()) << "no effect is computed for data";
   const ReadBack a = draw(whole, view, kAll, settings), b = draw(tiled, view, kAll, settings);
   EXPECT_EQ(a.pixels, b.pixels);
   for (int y = 0; y < kSize.height; ++y) {

@@ -189,9 +189,11 @@ TEST_F(Occlusion, IsAPassATextureAndAProgramOnlyWhereItIsOn) {
   Renderer renderer;
   renderer.setPrimitives(scene);
   const View view = test::viewOf(*scene, {1, 1});
-  draw(renderer, view, test::withSamples(1));
+  draw(renderer, view, test::withSamples(1, QuadricMethod::splat));
   const RenderStats off = renderer.stats();
-  draw(renderer, view, withOcclusion(10));
+  RenderSettings settings = withOcclusion(10);
+  settings.quadrics = QuadricMethod::splat;
+  draw(renderer, view, settings);
   const RenderStats on = renderer.stats();
   const auto has = [](const auto& list) {
     return std::any_of(list.begin(), list.end(), [](const auto& e) { return e.name == "occlusion"; });

@@ -14,15 +14,15 @@ namespace {
 using test::exactHit;
 using test::ExactHit;
 
-class Quadrics : public test::GlTest {
+class Quadrics : public test::GlTest, public testing::WithParamInterface<QuadricMethod> {
  protected:
   // Every pixel is right: the same thing is met, at the same distance, unless the ray grazes something or two
   // things are met within `tolerance` [Å] of each other. Returns how many pixels show something.
-  static int expectExact(const std::shared_ptr<Primitives>& primitives, const View& view,
-                         double tolerance = 1e-4) {
+  int expectExact(const std::shared_ptr<Primitives>& primitives, const View& view, double tolerance = 1e-4) {
     Renderer renderer;
     renderer.setPrimitives(primitives);
-    const HitImage image = renderer.renderHits(view, {.distance = true, .normal = true, .id = true});
+    const HitImage image =
+        renderer.renderHits(view, {.distance = true, .normal = true, .id = true}, {}, GetParam());
     int shown = 0, excused = 0;
     for (int y = 0; y < view.size.height; ++y) {
       for (int x = 0; x < view.size.width; ++x) {
@@ -53,24 +53,29 @@ class Quadrics : public test::GlTest {
   }
 };
 
-TEST_F(Quadrics, SpheresArePixelExactInPerspective) {
+INSTANTIATE_TEST_SUITE_P(By, Quadrics, testing::Values(QuadricMethod::splat, QuadricMethod::tiles),
+                         [](const auto& each) {
+                           return each.param == QuadricMethod::splat ? "splat" : "tiles";
+                         });
+
+TEST_P(Quadrics, SpheresArePixelExactInPerspective) {
   const auto scene = test::randomSpheres(300, 1);
   EXPECT_GT(expectExact(scene, test::viewOf(*scene, {160, 120})), 5000);
 }
 
-TEST_F(Quadrics, SpheresArePixelExactInOrthographicViews) {
+TEST_P(Quadrics, SpheresArePixelExactInOrthographicViews) {
   const auto scene = test::randomSpheres(300, 2);
   EXPECT_GT(expectExact(scene, test::viewOf(*scene, {160, 120}, Projection::orthographic)), 5000);
 }
 
-TEST_F(Quadrics, BallsAndSticksArePixelExact) {
+TEST_P(Quadrics, BallsAndSticksArePixelExact) {
   const auto scene = test::randomChain(60, 3);
   for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
     EXPECT_GT(expectExact(scene, test::viewOf(*scene, {200, 150}, projection)), 3000);
   }
 }
 
-TEST_F(Quadrics, WideAndNarrowFieldsOfView) {
+TEST_P(Quadrics, WideAndNarrowFieldsOfView) {
   const auto scene = test::randomChain(40, 4);
   for (const double degrees : {0.01, 1.0, 120.0, 170.0}) {
     const View view =
@@ -79,14 +84,14 @@ TEST_F(Quadrics, WideAndNarrowFieldsOfView) {
   }
 }
 
-TEST_F(Quadrics, NoFalseMissAndNoErrorAbove1e3AngstromAt10000Angstrom) {
+TEST_P(Quadrics, NoFalseMissAndNoErrorAbove1e3AngstromAt10000Angstrom) {
   const auto scene = test::randomSpheres(200, 5);
   View view = test::viewOf(*scene, {200, 150});
   view.pixelSize *= view.distance / 10000;
   view.distance = 10000;
   Renderer renderer;
   renderer.setPrimitives(scene);
-  const HitImage image = renderer.renderHits(view, {});
+  const HitImage image = renderer.renderHits(view, {}, {}, GetParam());
   int shown = 0;
   double worst = 0;
   for (int y = 0; y < 150; ++y) {
@@ -104,7 +109,7 @@ TEST_F(Quadrics, NoFalseMissAndNoErrorAbove1e3AngstromAt10000Angstrom) {
   EXPECT_LT(worst, 1e-3);
 }
 
-TEST_F(Quadrics, CameraInsideASphereSeesItsInside) {
+TEST_P(Quadrics, CameraInsideASphereSeesItsInside) {
   auto scene = std::make_shared<Primitives>();
   scene->spheres = {{{0, 0, 0}, 5, 0xFF0000, 1}, {{0, 0, -3}, 0.5f, 0x00FF00, 2}};
   Camera camera;
@@ -114,7 +119,7 @@ TEST_F(Quadrics, CameraInsideASphereSeesItsInside) {
   EXPECT_EQ(expectExact(scene, view), 64 * 48);
 }
 
-TEST_F(Quadrics, SpheresAndSticksAcrossTheNearPlaneAreCutOpen) {
+TEST_P(Quadrics, SpheresAndSticksAcrossTheNearPlaneAreCutOpen) {
   const auto scene = test::randomChain(60, 6);
   for (const double distance : {0.0, 0.7, 3.0}) {
     Camera camera;
@@ -130,13 +135,13 @@ TEST_F(Quadrics, SpheresAndSticksAcrossTheNearPlaneAreCutOpen) {
   }
 }
 
-TEST_F(Quadrics, ZeroLengthBondsAndZeroRadiiDrawNothing) {
+TEST_P(Quadrics, ZeroLengthBondsAndZeroRadiiDrawNothing) {
   auto scene = std::make_shared<Primitives>();
   scene->spheres = {{{0, 0, 0}, 1, 0xFF0000, 1}, {{0.5f, 2, 0}, 0, 0xFF0000, 2}};
   scene->cylinders = {{{2, 0, 0}, 0.2f, {2, 0, 0}, 1, 1, 3, 3}, {{-2, 0, 0}, 0, {-2, 1, 0}, 1, 1, 4, 4}};
   Renderer renderer;
   renderer.setPrimitives(scene);
-  const HitImage image = renderer.renderHits(test::viewOf(*scene, {90, 70}), {});
+  const HitImage image = renderer.renderHits(test::viewOf(*scene, {90, 70}), {}, {}, GetParam());
   int shown = 0;
   for (const std::uint32_t id : image.id) {
     EXPECT_LE(id, 1u);
@@ -145,29 +150,29 @@ TEST_F(Quadrics, ZeroLengthBondsAndZeroRadiiDrawNothing) {
   EXPECT_GT(shown, 100);
 }
 
-TEST_F(Quadrics, SingleAtomOnePixel) {
+TEST_P(Quadrics, SingleAtomOnePixel) {
   auto scene = std::make_shared<Primitives>();
   scene->spheres = {{{0, 0, 0}, 1.7f, 0xFF0000, 1}};
   const View view = test::viewOf(*scene, {1, 1});
   EXPECT_EQ(expectExact(scene, view), 1);
 }
 
-TEST_F(Quadrics, EmptySceneIsAllBackground) {
+TEST_P(Quadrics, EmptySceneIsAllBackground) {
   Renderer renderer;
-  const HitImage image =
-      renderer.renderHits(makeView(Camera{}, {7, 5}, {}), {.distance = true, .normal = true, .id = true});
+  const HitImage image = renderer.renderHits(makeView(Camera{}, {7, 5}, {}),
+                                             {.distance = true, .normal = true, .id = true}, {}, GetParam());
   ASSERT_EQ(image.id.size(), 35u);
   for (const std::uint32_t id : image.id) EXPECT_EQ(id, 0u);
   for (const float distance : image.distance) EXPECT_TRUE(std::isinf(distance));
 }
 
-TEST_F(Quadrics, MoleculeAMillionAngstromAwayFromTheOrigin) {
+TEST_P(Quadrics, MoleculeAMillionAngstromAwayFromTheOrigin) {
   auto scene = test::randomSpheres(100, 8);
   scene->origin = {1e6 + 0.123456789, -1e6, 1e6};
   EXPECT_GT(expectExact(scene, test::viewOf(*scene, {120, 90})), 2000);
 }
 
-TEST_F(Quadrics, NeedleSticksOfExtremeLength) {
+TEST_P(Quadrics, NeedleSticksOfExtremeLength) {
   for (const float length : {1e-6f, 1e-3f, 1e4f}) {
     auto scene = std::make_shared<Primitives>();
     const float radius = length / 50;

@@ -21,9 +21,10 @@ class RendererTest : public test::GlTest {
  protected:
   static std::vector<std::byte> draw(Renderer& renderer, const View& view, int samples,
                                      const Background& background = {},
-                                     PixelFormat format = PixelFormat::rgba8) {
+                                     PixelFormat format = PixelFormat::rgba8,
+                                     QuadricMethod quadrics = QuadricMethod::automatic) {
     test::MemorySink sink;
-    renderer.renderPicture(view, Lighting{}, background, test::withSamples(samples), format, sink);
+    renderer.renderPicture(view, Lighting{}, background, test::withSamples(samples, quadrics), format, sink);
     EXPECT_EQ(sink.bytes.size(),
               bytesPerPixel(format) * static_cast<std::size_t>(view.size.width * view.size.height));
     return sink.bytes;
@@ -61,7 +62,7 @@ TEST_F(RendererTest, SpheresOnlyLeavesOutEverythingElse) {
   const auto scene = test::randomSpheres(50, 1);
   Renderer renderer;
   renderer.setPrimitives(scene);
-  draw(renderer, test::viewOf(*scene, kSize), 1);
+  draw(renderer, test::viewOf(*scene, kSize), 1, {}, PixelFormat::rgba8, QuadricMethod::splat);
   const RenderStats stats = renderer.stats();
   EXPECT_EQ(names(stats.passes), (Names{"spheres", "shade"}));
   EXPECT_EQ(stats.programs, (Names{"quadrics/sphere ALBEDO NORMAL", "post/shade ENCODE_SRGB FINAL"}));
@@ -79,7 +80,8 @@ TEST_F(RendererTest, DistanceOnlyNeedsNoColourAndNoShading) {
   Renderer renderer;
   renderer.setPrimitives(scene);
   const HitImage image =
-      renderer.renderHits(test::viewOf(*scene, kSize), {.distance = true, .normal = false, .id = false});
+      renderer.renderHits(test::viewOf(*scene, kSize), {.distance = true, .normal = false, .id = false}, {},
+                          QuadricMethod::splat);
   EXPECT_TRUE(image.id.empty());
   EXPECT_TRUE(image.normal.empty());
   const RenderStats stats = renderer.stats();
@@ -95,8 +97,7 @@ TEST_F(RendererTest, FullPictureUsesEachProgramOnce) {
   Renderer renderer;
   renderer.setPrimitives(scene);
   const View view = test::viewOf(*scene, kSize);
-  draw(renderer, view, 4);
-  draw(renderer, view, 4);
+  for (int i = 0; i < 2; ++i) draw(renderer, view, 4, {}, PixelFormat::rgba8, QuadricMethod::splat);
   const RenderStats stats = renderer.stats();
   EXPECT_EQ(names(stats.passes), (Names{"spheres", "cylinders", "shade", "resolve"}));
   EXPECT_EQ(stats.passes[0].runs, 8);

@@ -27,9 +27,10 @@ View viewOf(const Primitives& primitives, ImageSize size, Projection projection 
             double fovY = 0.5);
 
 /// Everything off but the number of rays per pixel.
-inline RenderSettings withSamples(int samples) {
+inline RenderSettings withSamples(int samples, QuadricMethod quadrics = QuadricMethod::automatic) {
   RenderSettings settings;
   settings.samples = samples;
+  settings.quadrics = quadrics;
   return settings;
 }
 

@@ -1,0 +1,113 @@
+#include "render/surface/tiles.h"
+
+#include <glad/gl.h>
+
+#include "core/tiles/field_tiles.h"
+#include "core/tiles/instruction_sets.h"
+#include "render/post/fullscreen.h"
+
+namespace meniscus {
+
+namespace {
+
+class Tiles : public SurfaceMethod {
+ public:
+  void prepare(const MetaballField& field) override {
+    camera_.setField(&field);
+    light_.setField(&field);
+  }
+  void addPasses(FrameGraph& graph, ShaderLibrary& shaders, const SurfaceTarget& target) override;
+  SurfaceStats takeStats() override;
+  std::vector<ResourceStats> buffers() const override { return {}; }
+
+ private:
+  void draw(const PassContext& context, ShaderLibrary& shaders, tiles::FieldTiles& caster,
+            const tiles::TileTarget& target, const GBufferRefs& g);
+
+  tiles::FieldTiles camera_, light_;  // lists of the picture outlive a shadow map
+  tiles::Planes planes_;
+};
+
+void Tiles::addPasses(FrameGraph& graph, ShaderLibrary& shaders, const SurfaceTarget& target) {
+  const GBufferRefs g = target.gbuffer;
+  std::vector<FrameGraph::Attachment> writes{{g.depth, FrameGraph::kDepth}};
+  for (const auto& [channel, location] :
+       {std::pair{g.albedo, 0}, std::pair{g.normal, 1}, std::pair{g.id, 2}, std::pair{g.distance, 3}}) {
+    if (channel.valid()) writes.push_back({channel, location});
+  }
+  const Tile& tile = target.tile;
+  const tiles::TileTarget cast{
+      target.view, target.origin, {tile.x, tile.y, tile.width, tile.height}, target.sampleShift};
+  tiles::FieldTiles& caster = target.prefix.empty() ? camera_ : light_;
+  graph.addPass(target.prefix + "surface", {g.depth}, writes,
+                [this, &shaders, &caster, cast, g](const PassContext& context) {
+                  draw(context, shaders, caster, cast, g);
+                });
+}
+
+void Tiles::draw(const PassContext& context, ShaderLibrary& shaders, tiles::FieldTiles& caster,
+                 const tiles::TileTarget& target, const GBufferRefs& g) {
+  const tiles::PlaneChannels channels{context.isLive(g.albedo), context.isLive(g.normal),
+                                      context.isLive(g.id), context.isLive(g.distance)};
+  caster.cast(target, channels, planes_);
+  const tiles::PixelArea& part = planes_.area;
+  const int x = part.x - target.area.x, y = part.y - target.area.y;
+  ShaderFlags flags;
+  std::vector<TextureLease> leases;
+  // As large as the target, of which the part is a different one in every view.
+  const auto bind = [&](const char* name, gl::TextureFormat format, unsigned unit, const void* data) {
+    leases.push_back(context.pool().lease(name, {format, target.area.width, target.area.height}));
+    leases.back()->write(part.width, part.height, data, x, y);
+    glBindTextureUnit(unit, leases.back()->object.name());
+  };
+  bind("surface depth", gl::TextureFormat::r32f, 0, planes_.depth.data());
+  if (channels.albedo) {
+    flags.insert("ALBEDO");
+    bind("surface albedo", gl::TextureFormat::rgba8, 1, planes_.albedo.data());
+  }
+  if (channels.normal) {
+    flags.insert("NORMAL");
+    bind("surface normal", gl::TextureFormat::rg16, 2, planes_.normal.data());
+  }
+  if (channels.id) {
+    flags.insert("ID");
+    bind("surface id", gl::TextureFormat::r32ui, 3, planes_.id.data());
+  }
+  if (channels.distance) {
+    flags.insert("DISTANCE");
+    bind("surface distance", gl::TextureFormat::r32f, 4, planes_.distance.data());
+  }
+  context.bindTarget();
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(x, y, part.width, part.height);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_GREATER);
+  drawFullscreen(shaders.program("post/fullscreen.vert", "surface/tiles.frag", flags));
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_SCISSOR_TEST);
+}
+
+SurfaceStats Tiles::takeStats() {
+  tiles::FieldCounts counts = camera_.takeCounts();
+  counts.add(light_.takeCounts());
+  SurfaceStats stats;
+  stats.method = "tiles (" + tiles::instructionSet() + ")";
+  stats.pixels = counts.rays;
+  stats.pieces = counts.pieces;
+  stats.iterations = counts.iterations;
+  stats.mostIterations = counts.mostIterations;
+  stats.grazing = counts.grazing;
+  stats.notConverged = counts.notConverged;
+  stats.details = {{"intervals bounded", static_cast<double>(counts.intervals)},
+                   {"intervals halved", static_cast<double>(counts.splits)},
+                   {"windows grown", static_cast<double>(counts.windowGrowths)}};
+  return stats;
+}
+
+}  // namespace
+
+std::unique_ptr<SurfaceMethod> makeTiles(const SurfaceParameters&) {
+  return std::make_unique<Tiles>();
+}
+
+}  // namespace meniscus

@@ -1,0 +1,59 @@
+#include "render/tile_quadrics.h"
+
+#include "core/tiles/instruction_sets.h"
+
+namespace meniscus {
+
+QuadricChoice chooseQuadrics(QuadricMethod method) {
+  const std::string cast = "drawn from tiles by " + tiles::instructionSet() + " instructions: ";
+  if (method == QuadricMethod::tiles) return {true, cast + "--quadrics tiles"};
+  if (method == QuadricMethod::splat) return {false, "--quadrics splat"};
+  const gl::Device device = gl::queryDevice();
+  if (device.software) return {true, cast + device.name + " runs on the processor"};
+  return {false, device.name + " is a GPU, which splats"};
+}
+
+void TileQuadrics::setPrimitives(std::shared_ptr<const Primitives> primitives) {
+  primitives_ = std::move(primitives);
+  camera_ = {};
+  light_ = {};
+  camera_.setPrimitives(primitives_.get());
+  light_.setPrimitives(primitives_.get());
+  planes_ = {};
+}
+
+void TileQuadrics::add(FrameGraph& graph, const View& view, const Tile& tile, glm::vec2 sampleShift,
+                       const GBufferRefs& g, const std::string& prefix) {
+  if (primitives_->spheres.empty() && primitives_->cylinders.empty() && primitives_->ellipsoids.empty()) {
+    graph.leaveOut("pass " + prefix + "tiles", "the scene has no quadrics");
+    return;
+  }
+  std::vector<FrameGraph::Attachment> writes{{g.depth, FrameGraph::kDepth}};
+  for (const auto& [channel, location] :
+       {std::pair{g.albedo, 0}, std::pair{g.normal, 1}, std::pair{g.id, 2}, std::pair{g.distance, 3}}) {
+    if (channel.valid()) writes.push_back({channel, location});
+  }
+  const tiles::TileTarget target{
+      view, primitives_->origin, {tile.x, tile.y, tile.width, tile.height}, sampleShift};
+  tiles::QuadricTiles& caster = prefix.empty() ? camera_ : light_;
+  // The framebuffer is bound for nothing but its clearing: the part with no block in it stays background.
+  graph.addPass(prefix + "tiles", {}, writes, [this, &caster, target, g](const PassContext& context) {
+    caster.cast(target,
+                {context.isLive(g.albedo), context.isLive(g.normal), context.isLive(g.id),
+                 context.isLive(g.distance)},
+                planes_);
+    const auto upload = [&](TextureRef channel, const auto& plane) {
+      if (!context.isLive(channel)) return;
+      const tiles::PixelArea& part = planes_.area;
+      context.texture(channel).write(part.width, part.height, plane.data(), part.x - target.area.x,
+                                     part.y - target.area.y);
+    };
+    upload(g.depth, planes_.depth);
+    upload(g.albedo, planes_.albedo);
+    upload(g.normal, planes_.normal);
+    upload(g.id, planes_.id);
+    upload(g.distance, planes_.distance);
+  });
+}
+
+}  // namespace meniscus

@@ -1,0 +1,39 @@
+#pragma once
+// Spheres, cylinders and ellipsoids cast by the processor from tile lists (core/tiles/) and uploaded into the
+// G-buffer: what is fastest where OpenGL itself runs on the processor (docs/measured/tiles.md).
+
+#include <memory>
+
+#include "core/primitives.h"
+#include "core/tiles/quadric_tiles.h"
+#include "render/frame_graph.h"
+#include "render/gbuffer.h"
+#include "render/view_block.h"
+
+namespace meniscus {
+
+/// Whether quadrics are drawn from tiles, and why, for --explain.
+struct QuadricChoice {
+  bool tiles = false;
+  std::string reason;
+};
+/// A context must be current.
+QuadricChoice chooseQuadrics(QuadricMethod method);
+
+class TileQuadrics {
+ public:
+  /// What to draw; gives up the lists of what was drawn before.
+  void setPrimitives(std::shared_ptr<const Primitives> primitives);
+
+  /// Adds one pass for all kinds of quadrics, which replaces what the channels hold; none if the scene has no
+  /// quadrics. `this` must live until the graph was executed. `prefix` goes before the pass's name.
+  void add(FrameGraph& graph, const View& view, const Tile& tile, glm::vec2 sampleShift,
+           const GBufferRefs& gbuffer, const std::string& prefix = {});
+
+ private:
+  std::shared_ptr<const Primitives> primitives_;
+  tiles::QuadricTiles camera_, light_;  // lists of the picture outlive a shadow map
+  tiles::Planes planes_;
+};
+
+}  // namespace meniscus

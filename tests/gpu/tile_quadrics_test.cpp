@@ -1,0 +1,84 @@
+// Quadrics cast from tiles against the same quadrics splatted, and what drawing them so makes and leaves out.
+
+#include "render/tile_quadrics.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "render/renderer.h"
+#include "tests/support/gl_fixture.h"
+#include "tests/support/scenes.h"
+
+namespace meniscus {
+namespace {
+
+class TileQuadricsTest : public test::GlTest {};
+
+constexpr HitChannels kAll{.distance = true, .normal = true, .id = true};
+
+// Pixels that differ by more than rounding.
+int differences(const std::shared_ptr<const Primitives>& scene, const View& view, double tolerance) {
+  Renderer renderer;
+  renderer.setPrimitives(scene);
+  const HitImage a = renderer.renderHits(view, kAll, {}, QuadricMethod::splat);
+  const HitImage b = renderer.renderHits(view, kAll, {}, QuadricMethod::tiles);
+  int different = 0;
+  for (std::size_t i = 0; i < a.id.size(); ++i) {
+    const bool same =
+        a.id[i] == b.id[i] &&
+        (a.id[i] == 0 || static_cast<double>(std::abs(a.distance[i] - b.distance[i])) <= tolerance);
+    different += !same;
+  }
+  return different;
+}
+
+TEST_F(TileQuadricsTest, ShowWhatSplattingShows) {
+  constexpr ImageSize kSize{400, 300};
+  auto all = std::make_shared<Primitives>(*test::randomChain(600, 5));
+  all->ellipsoids = test::randomEllipsoids(300, 6, 0.3)->ellipsoids;
+  for (EllipsoidPrimitive& e : all->ellipsoids) e.id += 1000;
+  for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
+    const View view = test::viewOf(*all, kSize, projection);
+    EXPECT_LE(differences(all, view, 1e-3), kSize.width * kSize.height / 100000 + 1);
+  }
+}
+
+// The camera 1e4 and 1e5 Å away, where a pixel is a thousandth of an atom.
+TEST_F(TileQuadricsTest, ShowTheSameFromAfar) {
+  const auto scene = test::randomSpheres(300, 8);
+  for (const double fovY : {2.4e-3, 2.4e-4}) {
+    const View view = test::viewOf(*scene, {300, 300}, Projection::perspective, fovY);
+    ASSERT_GT(view.distance, 5e3);
+    EXPECT_LE(differences(scene, view, view.distance * 1e-6), 3);
+  }
+}
+
+TEST_F(TileQuadricsTest, NeedNoBufferAndNoProgram) {
+  const auto scene = test::randomChain(30, 1);
+  Renderer renderer;
+  renderer.setPrimitives(scene);
+  RenderSettings settings = test::withSamples(3, QuadricMethod::tiles);
+  settings.shadows.mode = ShadowMode::hard;
+  test::MemorySink sink;
+  renderer.renderPicture(test::viewOf(*scene, {80, 60}), Lighting{}, {}, settings, PixelFormat::rgba8, sink);
+  const RenderStats stats = renderer.stats();
+  EXPECT_TRUE(stats.buffers.empty());
+  EXPECT_EQ(stats.programs.size(), 3u) << "shadow, shade, resolve";
+  EXPECT_EQ(stats.passes.front().name, "shadow map: tiles");
+  EXPECT_EQ(stats.passes[1].name, "tiles");
+  EXPECT_EQ(stats.passes[1].runs, 3);
+  EXPECT_TRUE(std::any_of(stats.omissions.begin(), stats.omissions.end(), [](const OmissionStats& o) {
+    return o.what == "pass spheres" && o.reason.find("tiles") != std::string::npos;
+  }));
+}
+
+TEST_F(TileQuadricsTest, AutomaticChoosesByDevice) {
+  EXPECT_EQ(chooseQuadrics(QuadricMethod::automatic).tiles, gl::queryDevice().software);
+  EXPECT_NE(chooseQuadrics(QuadricMethod::automatic).reason.find(gl::queryDevice().name), std::string::npos);
+  EXPECT_FALSE(chooseQuadrics(QuadricMethod::splat).tiles);
+  EXPECT_TRUE(chooseQuadrics(QuadricMethod::tiles).tiles);
+}
+
+}  // namespace
+}  // namespace meniscus
