@@ -245,8 +245,10 @@ Objects RenderRun::objectsFor(const std::string& file,
     for (const std::uint32_t atom : atoms) owner[atom] = i + 1;
   }
   Objects objects(options_.shown.size() + 1, whole);
-  for (std::size_t i = 0; i < options_.shown.size(); ++i)
+  for (std::size_t i = 0; i < options_.shown.size(); ++i) {
     objects[i + 1].representation = options_.shown[i].representation;
+    if (options_.shown[i].coloring) objects[i + 1].coloring = *options_.shown[i].coloring;
+  }
   for (std::uint32_t atom = 0; atom < owner.size(); ++atom) objects[owner[atom]].atoms.push_back(atom);
   std::erase_if(objects, [](const SceneObject& object) { return object.atoms.empty(); });
   return objects;

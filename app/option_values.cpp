@@ -262,8 +262,14 @@ std::pair<std::string, double> parseSurfaceOption(std::string_view option, std::
 ShownApart parseShown(std::string_view option, std::string_view value) {
   const std::size_t equals = value.rfind('=');
   if (equals == std::string_view::npos || equals == 0)
-    throwBadValue(option, value, "CID=REPRESENTATION, as in '(HEM)=licorice'");
-  return {std::string(value.substr(0, equals)), parseRepresentation(option, value.substr(equals + 1))};
+    throwBadValue(option, value,
+                  "CID=REPRESENTATION or CID=REPRESENTATION:COLOR, as in '(HEM)=licorice:element'");
+  const std::string_view how = value.substr(equals + 1);
+  const std::size_t colon = how.find(':');
+  ShownApart shown{
+      std::string(value.substr(0, equals)), parseRepresentation(option, how.substr(0, colon)), {}};
+  if (colon != std::string_view::npos) shown.coloring = parseColoring(option, how.substr(colon + 1));
+  return shown;
 }
 
 void parseAltloc(std::string_view option, std::string_view value, StructureOptions& options) {

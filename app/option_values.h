@@ -69,8 +69,9 @@ std::pair<std::string, double> parseSurfaceOption(std::string_view option, std::
 struct ShownApart {
   std::string cid;
   Representation representation;
+  std::optional<Coloring> coloring;  ///< nothing = as the rest
 };
-/// CID=REPRESENTATION.
+/// CID=REPRESENTATION or CID=REPRESENTATION:COLOR.
 ShownApart parseShown(std::string_view option, std::string_view value);
 
 /// "first", "all" or a letter or digit.

@@ -129,9 +129,9 @@ void addLookOptions(CLI::App& app, RenderOptions& o) {
               "surface (a smooth skin over all atoms)\n"
               "[spacefill: it shows any molecule, of any size]",
               [&o](auto& n, auto& v) { o.representation = parseRepresentation(n, v); });
-  group.values("--show", "CID=NAME",
-               "Draw these atoms (as --select) in a way of their own, for\n"
-               "example '(HEM)=licorice'; may be repeated",
+  group.values("--show", "CID=NAME[:SCHEME]",
+               "Draw these atoms (as --select) in a way and colours of\n"
+               "their own, as in '(HEM)=licorice:element'; may be repeated",
                [&o](auto& n, auto& v) { o.shown.push_back(parseShown(n, v)); });
   group.value("--color,--colour", "SCHEME",
               "element (Jmol), chain, residue (chemical kind), bfactor,\n"

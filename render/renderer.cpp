@@ -31,8 +31,19 @@ constexpr std::int64_t kTilePixels = std::int64_t{8} << 20;
 // Finished rows wait for the ones beside them: at most 128 MiB, unless one row alone is larger.
 constexpr std::int64_t kBandBytes = std::int64_t{128} << 20;
 
-// Side of the largest shadow map [texels].
+// Side of the largest shadow map [texels]. As a picture from outside its scene needs about two texels a
+// pixel, it is no larger than this multiple of the picture either: a close-up's frustum, seen from the side,
+// is wide.
 constexpr int kShadowMapSize = 8192;
+constexpr double kShadowTexelsPerPixel = 8;
+constexpr int kLeastShadowMapSize = 2048;
+
+int largestShadowMap(ImageSize picture) {
+  const gl::Limits limits = gl::queryLimits();
+  const double side = std::sqrt(kShadowTexelsPerPixel * static_cast<double>(picture.width) * picture.height);
+  const int wanted = static_cast<int>(std::clamp<double>(side, kLeastShadowMapSize, kShadowMapSize));
+  return std::min({wanted, limits.textureSize, limits.viewportWidth, limits.viewportHeight});
+}
 
 gl::TextureFormat textureFormat(PixelFormat format) {
   switch (format) {
@@ -228,9 +239,7 @@ void Renderer::setPrimitives(std::shared_ptr<const Primitives> primitives) {
 // The same primitives as seen from the key light, with only their depth wanted.
 void Renderer::Impl::drawShadowMap(Frame& frame) {
   const BoundingSphere bounds = primitives->bounds();
-  const gl::Limits limits = gl::queryLimits();
-  const int maxSize =
-      std::min({kShadowMapSize, limits.textureSize, limits.viewportWidth, limits.viewportHeight});
+  const int maxSize = largestShadowMap(frame.view.size);
   const ShadowSettings& shadows = frame.settings.shadows;
   const View light =
       makeLightView(frame.view, frame.shade.lighting.key, bounds, pixelFootprint(frame.view, bounds), maxSize,

@@ -31,13 +31,13 @@ TEST_F(RenderSurface, drawsAMetaballPerAtomAndNothingElse) {
   EXPECT_NE(text.find("Surface by "), std::string::npos) << text;
 }
 
-TEST_F(RenderSurface, joinsWhatSpheresLeaveApart) {
+TEST_F(RenderSurface, isThickerAtALowerLevel) {
   const auto covered = [this](const std::vector<std::string>& more) {
     return render("c60.pdb", more).covered();
   };
-  const double spheres = covered({"--zoom", "0.7"}), skin = covered(surface({"--zoom", "0.7"}));
-  EXPECT_GT(skin, spheres * 0.9);
-  EXPECT_GT(covered(surface({"--zoom", "0.7", "--level", "0.2"})), skin) << "a lower level is thicker";
+  const double skin = covered(surface({"--zoom", "0.7"}));
+  EXPECT_GT(skin, 0.1);
+  EXPECT_GT(covered(surface({"--zoom", "0.7", "--level", "0.2"})), skin);
   EXPECT_LT(covered(surface({"--zoom", "0.7", "--level", "1.5"})), skin);
   EXPECT_EQ(covered(surface({"--level", "1000"})), 0) << "no field is as strong as that";
 }
@@ -78,6 +78,11 @@ TEST_F(RenderSurface, hidesAndIsHiddenByWhatIsShownOtherwise) {
   const Picture both = render(
       "1cbs.cif.gz", {"--show", "(REA)=spacefill", "--representation", "licorice", "--focus", "(REA)"});
   EXPECT_NE(both.pixels, render("1cbs.cif.gz", {"--representation", "licorice", "--focus", "(REA)"}).pixels);
+  EXPECT_NE(render("1cbs.cif.gz",
+                   {"--show", "(REA)=spacefill:#0000ff", "--representation", "licorice", "--focus", "(REA)"})
+                .pixels,
+            both.pixels)
+      << "in another colour";
   EXPECT_EQ(render("1cbs.cif.gz", {"--show", "*=spacefill", "--representation", "licorice"}).pixels,
             render("1cbs.cif.gz").pixels)
       << "all atoms shown otherwise";
@@ -94,7 +99,10 @@ TEST_F(RenderSurface, saysWhatIsWrong) {
   expectUsage({"--blend", "1"}, {"--blend", "1.05"});
   expectUsage({"--level", "0"}, {"--level"});
   expectUsage({"--surface-method", "magic"}, {"--surface-method", "magic", "auto"});
-  expectUsage({"--surface-option", "speed=9"}, {"--surface-option", "speed", "tolerance"});
+  expectUsage({"--surface-method", "bezier", "--surface-option", "speed=9"},
+              {"--surface-option", "speed", "tolerance"});
+  expectUsage({"--surface-method", "bezier", "--surface-option", "tolerance=2"},
+              {"--surface-option", "tolerance=2", "from"});
   expectUsage({"--surface-option", "speed"}, {"--surface-option", "NAME=NUMBER"});
   expectUsage({"--show", "(HEM)"}, {"--show", "CID=REPRESENTATION"});
   expectUsage({"--show", "//A/x/y/z/w=licorice"}, {"--show"});

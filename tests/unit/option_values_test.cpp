@@ -52,9 +52,13 @@ TEST(ParseShown, takesASelectionAndARepresentation) {
   const ShownApart shown = parseShown("--name", "(HEM)=ball-and-stick");
   EXPECT_EQ(shown.cid, "(HEM)");
   EXPECT_EQ(shown.representation, Representation::ballAndStick);
+  EXPECT_FALSE(shown.coloring);
+  EXPECT_EQ(parseShown("--name", "(HEM)=licorice:element").coloring->scheme, ColorScheme::element);
+  EXPECT_EQ(parseShown("--name", "//A=licorice:#f00").coloring->uniform, Rgb{0xFF0000});
   for (const char* value : {"", "(HEM)", "=licorice"})
     expectRefused(value, "CID=REPRESENTATION", [](auto& v) { parseShown("--name", v); });
   EXPECT_THROW(parseShown("--name", "(HEM)=cartoonish"), UsageError);
+  EXPECT_THROW(parseShown("--name", "(HEM)=licorice:"), UsageError);
 }
 
 TEST(ParseInteger, takesWholeNumbersInRange) {
