@@ -41,12 +41,9 @@ void main() {
     for (int x = low.x; x <= high.x; ++x) {
       vec2 offset = vec2(x, y);
       vec2 there = nearest(bordersAt(at + ivec2(x, y)), offset);
-      // Else it is another surface's line. Its point against this pixel's plane is enough, the border itself
-      // has been judged from both sides.
-      vec3 point = viewPoint(uView, vec2(at) + offset + 0.5 + uView.tile.xy,
-                             texelFetch(tDepth, at + ivec2(x, y), 0).r);
-      float gap = abs(dot(here.normal, point - here.point));
-      bool same = gap <= max(uStep.x * here.footprint * length(offset), uStep.y) + uStep.z;
+      // Else it is another surface's line.
+      Surface other = surfaceAt(at + ivec2(x, y), texelFetch(tDepth, at + ivec2(x, y), 0).r);
+      bool same = !isApart(here, other, length(offset));
       square = min(square, mix(vec2(kFar), there, bvec2(same)));
     }
   }
