@@ -136,6 +136,33 @@ TEST_F(FrameGraphTest, UnwantedChannelsOfALivePassAreNeverAllocated) {
   EXPECT_TRUE(omitted(stats, "channel color"));
 }
 
+// Depth that is only tested is neither cleared nor a reason to run.
+TEST_F(FrameGraphTest, TestedDepthIsAttachedAndNotWritten) {
+  FrameGraph graph(pool);
+  const TextureRef depth = graph.create("depth", kDepths), color = graph.create("color", kFloats),
+                   unwanted = graph.create("unwanted", kFloats);
+  graph.addPass("draw", {depth}, {{depth, FrameGraph::kDepth}}, [](const PassContext&) {
+    const float half_ = 0.5f;
+    GLint bound = 0;
+    glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &bound);
+    glClearNamedFramebufferfv(static_cast<GLuint>(bound), GL_DEPTH, 0, &half_);
+  });
+  graph.addPass("use", {depth}, {{color, 0}, {depth, FrameGraph::kTestedDepth}}, [](const PassContext&) {
+    GLint type = 0;
+    glGetFramebufferAttachmentParameteriv(GL_DRAW_FRAMEBUFFER, GL_DEPTH_ATTACHMENT,
+                                          GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE, &type);
+    EXPECT_EQ(type, GL_TEXTURE);
+  });
+  graph.addPass("look", {depth}, {{unwanted, 0}, {depth, FrameGraph::kTestedDepth}},
+                [](const PassContext&) { ADD_FAILURE() << "nobody wants it"; });
+  graph.want(color);
+  graph.want(depth);
+  graph.execute(stats, false);
+  std::vector<float> values(static_cast<std::size_t>(kWidth * kHeight));
+  graph.texture(depth).read(kWidth, kHeight, kWidth, values.data());
+  for (const float value : values) EXPECT_EQ(value, 0.5f);
+}
+
 TEST_F(FrameGraphTest, APassFindsItsFramebufferAndViewportSet) {
   FrameGraph graph(pool);
   const TextureRef a = graph.create("a", kFloats);
