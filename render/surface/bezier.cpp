@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 
 #include "core/error.h"
 #include "render/surface/peel_regions.h"
@@ -47,6 +48,16 @@ struct Control {
   std::uint32_t overflow = 0;
   std::uint32_t box[4] = {0xFFFFFFFFu, 0xFFFFFFFFu, 0, 0};
 };
+
+// Cell of shaders/surface/bezier_step.frag.
+struct CellState {
+  std::uint32_t unfinished, waiting, least;
+};
+
+// Balls of a cell that are drawn at first; twice as many whenever a pixel waits for more.
+constexpr int kFirstWindow = 32;
+// Every so many layers it is found out which balls all pixels have passed.
+constexpr int kLeastPeriod = 8;
 
 // Statistics of shaders/surface/bezier_step.frag.
 struct Sums {
@@ -112,6 +123,8 @@ class Bezier : public SurfaceMethod {
     const PassContext& context;
     ShaderLibrary& shaders;
     GBufferRefs gbuffer;
+    const View& view;
+    Tile tile;
     ScreenRect screen;
     ProjectedField projected;
     ShaderFlags kernelFlags;
@@ -125,6 +138,9 @@ class Bezier : public SurfaceMethod {
     RegionTargets targets;
     std::vector<PeelCell> cells;
     std::vector<PeelInstance> instances;
+    double step;  // length of a step on the ray [Å]
+    std::vector<PeelWindow> windows;
+    std::vector<StretchRange> stretches;
   };
 
   void draw(const PassContext& context, ShaderLibrary& shaders, const View& view, const glm::dvec3& origin,
@@ -135,8 +151,9 @@ class Bezier : public SurfaceMethod {
   void uploadInstances(const Region& region);
   void cull(Frame& frame, Region& region);
   void peel(Frame& frame, Region& region);
-  void peelLayer(Frame& frame, Region& region, const std::vector<std::size_t>& active);
-  void step(Frame& frame, Region& region, const std::vector<std::size_t>& active, int layer);
+  void peelLayer(Frame& frame, const Region& region, const std::vector<std::size_t>& active);
+  void step(Frame& frame, const Region& region, const std::vector<std::size_t>& active, int layer);
+  int firstNotPassed(const Frame& frame, const Region& region, std::size_t cell, std::uint32_t least) const;
   void shade(Frame& frame, const Region& region);
   void drawCells(const Region& region, const std::vector<PeelCell>& cells) const;
   void scissorTo(const PeelCell& cell, const ScreenRect& corner) const;
@@ -150,7 +167,7 @@ class Bezier : public SurfaceMethod {
   Storage instances_, balls_, lists_, control_, seen_, spilled_, statistics_;
   gl::Buffer fieldUniforms_, bezierUniforms_;
   // Counted here rather than by shaders.
-  double ballsInView_ = 0, ballsLeft_ = 0, layers_ = 0, cellLayers_ = 0, repairs_ = 0;
+  double ballsInView_ = 0, ballsLeft_ = 0, layers_ = 0, cellLayers_ = 0, instancesDrawn_ = 0, repairs_ = 0;
 };
 
 }  // namespace
@@ -211,6 +228,8 @@ void Bezier::draw(const PassContext& context, ShaderLibrary& shaders, const View
   Frame frame{context,
               shaders,
               gbuffer,
+              view,
+              tile,
               {0, 0, tile.width, tile.height},
               projectField(*field_, coreShares_, view, origin, tile, sampleShift),
               {},
@@ -247,7 +266,8 @@ std::int64_t Bezier::mostPixels(int list) const {
 // The region's surface into the G-buffer. Pixels whose list is too short are left out and, if they are to be
 // repaired, drawn again with a longer one; `again`: only those that were left out.
 void Bezier::drawRegion(Frame& frame, const ScreenRect& rect, int list, bool again) {
-  Region region{rect, list, again, {}, {}, {}};
+  Region region{rect, list, again, {}, {}, {}, 1, {}, {}};
+  region.step = std::exp2(std::ceil(std::log2(frame.projected.reach / kSteps)));
   region.cells = makeCells(frame.projected, frame.screen, rect, tiles_, region.instances);
   if (region.cells.empty()) return;
   TexturePool& pool = frame.context.pool();
@@ -266,7 +286,7 @@ void Bezier::drawRegion(Frame& frame, const ScreenRect& rect, int list, bool aga
   lists_.reserve(static_cast<std::uint64_t>(rect.pixels()) * 4 *
                  static_cast<std::uint64_t>(list + kHeaderSlots));
   lists_.bind(GL_SHADER_STORAGE_BUFFER, 1);
-  control_.reserve(sizeof(Control) + 4 * region.cells.size());
+  control_.reserve(sizeof(Control) + sizeof(CellState) * region.cells.size());
   control_.zero();
   const Control fresh;
   control_.write(&fresh, sizeof fresh);
@@ -297,10 +317,9 @@ void Bezier::drawRegion(Frame& frame, const ScreenRect& rect, int list, bool aga
 }
 
 void Bezier::setUniforms(const Frame& frame, const Region& region) {
-  const double step = std::exp2(std::ceil(std::log2(frame.projected.reach / kSteps)));
   BezierBlock block;
-  block.steps = {static_cast<float>(step), static_cast<float>(1 / step), static_cast<float>(tolerance_),
-                 0.0f};
+  block.steps = {static_cast<float>(region.step), static_cast<float>(1 / region.step),
+                 static_cast<float>(tolerance_), 0.0f};
   block.region = {region.rect.x, region.rect.y, region.rect.width, region.rect.height};
   block.list = {region.list, repair_ ? 1 : 0, region.again ? 1 : 0, frame.screen.width};
   bezierUniforms_.update(&block);
@@ -365,21 +384,53 @@ void Bezier::peel(Frame& frame, Region& region) {
   glScissor(0, 0, region.rect.width, region.rect.height);
   glClearBufferuiv(GL_COLOR, 0, zero);
   glClearBufferuiv(GL_COLOR, 1, zero);
-  std::vector<std::size_t> active(region.cells.size());
-  for (std::size_t i = 0; i < active.size(); ++i) active[i] = i;
-  std::vector<std::uint32_t> progress(region.cells.size());
+  const std::size_t cells = region.cells.size();
+  std::vector<std::size_t> active(cells);
+  std::iota(active.begin(), active.end(), std::size_t{0});
+  region.windows.resize(cells);
+  region.stretches.clear();
+  for (std::size_t i = 0; i < cells; ++i) {
+    region.windows[i] = {0, std::min(kFirstWindow, region.cells[i].count)};
+    region.stretches.push_back(stretchRange(frame.view, frame.tile, region.rect, region.cells[i].rect));
+  }
+  std::vector<CellState> states(cells);
   for (int layer = 1; !active.empty(); ++layer) {
+    const bool measured = layer % kLeastPeriod == 0;
+    if (measured) {
+      for (CellState& state : states) state.least = 0xFFFFFFFFu;
+      control_.write(states.data(), states.size() * sizeof(CellState), sizeof(Control));
+    }
     peelLayer(frame, region, active);
     step(frame, region, active, layer);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-    control_.read(progress.data(), progress.size() * 4, sizeof(Control));
+    control_.read(states.data(), states.size() * sizeof(CellState), sizeof(Control));
     ++layers_;
     cellLayers_ += static_cast<double>(active.size());
-    std::erase_if(active, [&](std::size_t i) { return progress[i] != static_cast<std::uint32_t>(layer); });
+    const auto now = static_cast<std::uint32_t>(layer);
+    std::erase_if(active, [&](std::size_t i) { return states[i].unfinished != now; });
+    for (const std::size_t i : active) {
+      PeelWindow& window = region.windows[i];
+      if (measured) window.from = firstNotPassed(frame, region, i, states[i].least);
+      if (states[i].waiting != now) continue;
+      const int more = std::max(kFirstWindow, 2 * (window.to - window.from));
+      window.to = std::min(region.cells[i].count, window.from + more);
+    }
   }
 }
 
-void Bezier::peelLayer(Frame& frame, Region& region, const std::vector<std::size_t>& active) {
+// The first ball of a cell's window of which it is not sure that all pixels have left it.
+int Bezier::firstNotPassed(const Frame& frame, const Region& region, std::size_t cell,
+                           std::uint32_t least) const {
+  int at = region.windows[cell].from;
+  for (; at < region.windows[cell].to; ++at) {
+    const PeelInstance& instance = region.instances[static_cast<std::size_t>(region.cells[cell].first + at)];
+    const double depth = frame.projected.depths[instance.ball].y;
+    if (!(stepAtMost(depth, region.stretches[cell], region.step) < static_cast<double>(least))) break;
+  }
+  return at;
+}
+
+void Bezier::peelLayer(Frame& frame, const Region& region, const std::vector<std::size_t>& active) {
   const float farthest = 1.0f;
   glBindFramebuffer(GL_FRAMEBUFFER, region.targets.peel);
   glScissor(0, 0, region.rect.width, region.rect.height);
@@ -390,23 +441,36 @@ void Bezier::peelLayer(Frame& frame, Region& region, const std::vector<std::size
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LESS);
   std::vector<PeelCell> cells;
-  for (const std::size_t i : active) cells.push_back(region.cells[i]);
+  for (const std::size_t i : active) {
+    cells.push_back(region.cells[i]);
+    cells.back().first += region.windows[i].from;
+    cells.back().count = region.windows[i].to - region.windows[i].from;
+    instancesDrawn_ += cells.back().count;
+  }
   drawCells(region, cells);
   glDisable(GL_DEPTH_TEST);
 }
 
 // Each texel of the last events is read and written by one and the same fragment, which OpenGL 4.5 allows
 // (§9.3.1); glTextureBarrier() comes between layers.
-void Bezier::step(Frame& frame, Region& region, const std::vector<std::size_t>& active, int layer) {
+void Bezier::step(Frame& frame, const Region& region, const std::vector<std::size_t>& active, int layer) {
   glBindFramebuffer(GL_FRAMEBUFFER, region.targets.step);
   glTextureBarrier();
   glBindTextureUnit(2, region.targets.events->object.name());
   glBindTextureUnit(3, region.targets.eventKeys->object.name());
   glBindTextureUnit(4, frame.context.texture(frame.gbuffer.depth).object.name());
   glUseProgram(frame.shaders.program("post/fullscreen.vert", "surface/bezier_step.frag", frame.kernelFlags));
+  const int measured = layer % kLeastPeriod == 0 ? 1 : 0;
   for (const std::size_t i : active) {
-    scissorTo(region.cells[i], {});
-    glUniform2i(0, static_cast<GLint>(i), layer);
+    const PeelCell& cell = region.cells[i];
+    const int next = region.windows[i].to;
+    double bound = kMostStep;
+    if (next < cell.count) {
+      const PeelInstance& instance = region.instances[static_cast<std::size_t>(cell.first + next)];
+      bound = stepAtLeast(frame.projected.depths[instance.ball].x, region.stretches[i], region.step);
+    }
+    scissorTo(cell, {});
+    glUniform4i(0, static_cast<GLint>(i), layer, static_cast<GLint>(bound), measured);
     glDrawArrays(GL_TRIANGLES, 0, 3);
   }
 }
@@ -461,8 +525,9 @@ SurfaceStats Bezier::takeStats() {
                    {"balls left after culling", ballsLeft_},
                    {"layers", layers_},
                    {"layers of tiles", cellLayers_},
+                   {"rectangles drawn in layers", instancesDrawn_},
                    {"repairs", repairs_}};
-  ballsInView_ = ballsLeft_ = layers_ = cellLayers_ = repairs_ = 0;
+  ballsInView_ = ballsLeft_ = layers_ = cellLayers_ = instancesDrawn_ = repairs_ = 0;
   return stats;
 }
 

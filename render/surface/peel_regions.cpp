@@ -2,10 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 namespace meniscus {
 
 namespace {
+
+// Side of the smallest cell [pixels]: a smaller one would cost more to set up than to draw.
+constexpr int kLeastCell = 16;
 
 // Where the grid's line i lies, of `side` + 1 over `size` pixels.
 int gridLine(int i, int side, int size) {
@@ -19,7 +24,7 @@ struct Column {
 // The columns (or rows) of the target's grid, as far as they lie in the region.
 std::vector<Column> columnsOf(int side, int target, int from, int size) {
   std::vector<Column> out;
-  const int count = std::clamp(side, 1, target);
+  const int count = std::clamp(side, 1, std::max(target / kLeastCell, 1));
   for (int i = 0; i < count; ++i) {
     const int low = std::max(gridLine(i, count, target) - from, 0);
     const int high = std::min(gridLine(i + 1, count, target) - from, size);
@@ -89,10 +94,36 @@ std::vector<PeelCell> makeCells(const ProjectedField& field, const ScreenRect& t
     const ProjectedBall& ball = field.balls[i];
     instances[static_cast<std::size_t>(at)] = {
         box, ball.pixel, ball.place, ball.eye, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(at)};
-    cell.crossesNear = cell.crossesNear || field.crossNear[i];
+    cell.crossesNear = cell.crossesNear || field.depths[i].x < field.nearDepth;
   });
   std::erase_if(cells, [](const PeelCell& cell) { return cell.count == 0; });
   return cells;
+}
+
+StretchRange stretchRange(const View& view, const Tile& tile, const ScreenRect& region,
+                          const ScreenRect& cell) {
+  if (view.projection == Projection::orthographic) return {};
+  const glm::dvec2 low(tile.x + region.x + cell.x - 1, tile.y + region.y + cell.y - 1);
+  const glm::dvec2 high = low + glm::dvec2(cell.width + 2, cell.height + 2);
+  const auto stretchAt = [&](const glm::dvec2& pixel) {
+    const glm::dvec2 slope = (pixel - view.center) * view.pixelSize;
+    return std::sqrt(1 + glm::dot(slope, slope));
+  };
+  const glm::dvec2 far = glm::max(glm::abs(low - view.center), glm::abs(high - view.center));
+  return {stretchAt(glm::clamp(view.center, low, high)), stretchAt(view.center + far)};
+}
+
+// Shaders round places to the nearest step, and have computed them in float32.
+constexpr double kSlackSteps = 64, kSlackShare = 2e-6;
+
+double stepAtLeast(double depth, const StretchRange& stretch, double step) {
+  const double steps = depth * (depth > 0 ? stretch.least : stretch.largest) / step;
+  return std::clamp(kMiddleStep + steps - kSlackSteps - kSlackShare * std::abs(steps), kFirstStep, kMostStep);
+}
+
+double stepAtMost(double depth, const StretchRange& stretch, double step) {
+  const double steps = depth * (depth > 0 ? stretch.largest : stretch.least) / step;
+  return kMiddleStep + steps + kSlackSteps + kSlackShare * std::abs(steps);
 }
 
 void keepSeen(std::vector<PeelCell>& cells, std::vector<PeelInstance>& instances,

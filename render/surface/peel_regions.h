@@ -31,10 +31,30 @@ struct PeelCell {
   bool crossesNear = false;  ///< whether a ray may begin inside a ball
 };
 
+/// Of the balls of a cell, by their nearest point, those that are drawn: all before `from` lie before the
+/// last event of every pixel, and a pixel whose next event is not before `to`'s nearest point waits.
+struct PeelWindow {
+  int from = 0, to = 0;
+};
+
 /// A region's cells that any ball reaches: of a grid of `side` x `side` over the target (0: the region is one
 /// cell); each with its balls in the field's order.
 std::vector<PeelCell> makeCells(const ProjectedField& field, const ScreenRect& target,
                                 const ScreenRect& region, int side, std::vector<PeelInstance>& instances);
+
+/// Least and largest length of a ray per height, over a cell's pixels.
+struct StretchRange {
+  double least = 1, largest = 1;
+};
+StretchRange stretchRange(const View& view, const Tile& tile, const ScreenRect& region,
+                          const ScreenRect& cell);
+
+// Places on rays are whole numbers of steps (shaders/include/bezier.glsl).
+inline constexpr double kMiddleStep = 0x20000000, kFirstStep = 0x00800000, kMostStep = 0x7FFFFFFF;
+
+/// No ray of a cell is before this step at so many Å below the plane; none is after it.
+double stepAtLeast(double depth, const StretchRange& stretch, double step);
+double stepAtMost(double depth, const StretchRange& stretch, double step);
 
 /// Keeps the instances that were seen, and the cells that have any.
 void keepSeen(std::vector<PeelCell>& cells, std::vector<PeelInstance>& instances,

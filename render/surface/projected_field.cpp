@@ -5,6 +5,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <numeric>
 
 namespace meniscus {
 
@@ -81,7 +82,15 @@ ProjectedField projectField(const MetaballField& field, const std::vector<float>
   out.block.plane = {high(plane), high(eyeAbove), low(eyeAbove), 0.0f};
   out.block.field = {static_cast<float>(field.level), static_cast<float>(field.kernel.exponent),
                      static_cast<float>(field.kernel.shape), 0.0f};
-  for (std::size_t i = 0; i < field.balls.size(); ++i) {
+  out.nearDepth = plane - view.nearZ;
+  std::vector<std::uint32_t> order(field.balls.size());
+  std::iota(order.begin(), order.end(), 0u);
+  const auto top = [&](std::uint32_t i) {
+    return centers[i].z + static_cast<double>(field.balls[i].support);
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return top(a) > top(b); });
+  for (const std::uint32_t i : order) {
     const Metaball& ball = field.balls[i];
     const glm::dvec3 c = centers[i];
     const double support = static_cast<double>(ball.support);
@@ -116,7 +125,7 @@ ProjectedField projectField(const MetaballField& field, const std::vector<float>
     b.id = ball.id;
     out.balls.push_back(b);
     out.boxes.emplace_back(from.x, from.y, to.x, to.y);
-    out.crossNear.push_back(c.z + support > view.nearZ);
+    out.depths.emplace_back(plane - c.z - support, plane - c.z + support);
     out.reach = std::max(out.reach, (std::abs(c.z - plane) + support) * stretch);
   }
   return out;

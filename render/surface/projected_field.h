@@ -33,10 +33,13 @@ struct FieldBlock {
 };
 
 struct ProjectedField {
-  std::vector<ProjectedBall>
-      balls;  ///< that reach behind the near plane and into the target, in the field's order
+  /// That reach behind the near plane and into the target; by their nearest point, then in the field's order.
+  std::vector<ProjectedBall> balls;
   std::vector<glm::vec4> boxes;  ///< of each: rectangle around it, in pixels of the target
-  std::vector<bool> crossNear;   ///< of each: whether it reaches before the near plane, too
+  /// Of each: how far its nearest and its farthest point lie below the plane [Å]; positive z is away from the
+  /// viewer.
+  std::vector<glm::dvec2> depths;
+  double nearDepth = 0;  ///< the same of the near plane
   FieldBlock block;
   double reach = 0;  ///< no place on a ray where a ball is met is farther from the plane [Å]
 };

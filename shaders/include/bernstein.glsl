@@ -3,7 +3,8 @@
 // include/field.glsl for Polygon and its degree. Flag: PLAIN, halving in the place of clipping.
 //
 // Where the paper's stack of three would overflow, the farthest of what waits is forgotten, and found again
-// from the whole polynomial once the nearer is done: any depth is right, three suffice for nearly all.
+// from the whole polynomial once the nearer is done: any depth is right, three suffice for nearly all. The
+// power kernel's polynomials, of up to 33 numbers, are too long to be kept: its stack is empty.
 
 // The part on [0, u] and the part on [u, 1] (de Casteljau). The bounds of both loops are the same: Mesa 22.3
 // runs an inner loop not even once whose bound is the outer one's counter.
@@ -65,8 +66,10 @@ struct Part {
 float firstRoot(Polygon whole, float width, inout Effort effort) {
   int degree = fieldDegree();
   Part now = Part(whole, 0.0, 1.0);
+#ifndef KERNEL_POWER
   Part next = now, second = now, third = now;
   int waiting = 0;
+#endif
   bool forgotten = false;
   for (int i = 0; i < kMostIterations; ++i) {
     if (now.p.c[0] > 0.0) return now.start;
@@ -79,12 +82,16 @@ float firstRoot(Polygon whole, float width, inout Effort effort) {
       if (high > 0.0) return mix(now.start, now.end, low / (low - high));
     }
     if (changes == 0 || narrow) {  // none here: on to what waits
+#ifndef KERNEL_POWER
       if (waiting > 0) {
         now = next;
         next = second;
         second = third;
         --waiting;
-      } else if (forgotten && now.end < 1.0) {
+        continue;
+      }
+#endif
+      if (forgotten && now.end < 1.0) {
         Polygon before;
         float from = now.end;
         splitPolygon(whole, from, before, now.p);
@@ -120,11 +127,15 @@ float firstRoot(Polygon whole, float width, inout Effort effort) {
       continue;
     }
     if (changes > 1 && anyPositive(right)) {
+#ifdef KERNEL_POWER
+      forgotten = true;
+#else
       forgotten = forgotten || waiting == 3;
       third = second;
       second = next;
       next = Part(right, middle, now.end);
       waiting = min(waiting + 1, 3);
+#endif
     }
     now.p = left;
     now.end = middle;

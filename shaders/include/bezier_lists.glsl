@@ -9,7 +9,7 @@ layout(std430, binding = 1) restrict LIST_ACCESS buffer Lists {
 };
 
 const int kStatus = 0;  // kHit, kInside, ... and the number of ids
-const int kPlace = 1;   // of a hit: the step before it
+const int kPlace = 1;   // of a hit: the step before it; until then, how many events there were
 const int kOffset = 2;  // and the distance from there
 const int kEffort = 3;  // pieces << 16 | iterations
 const int kSolved = 4;  // most iterations of one piece << 16 | pieces that took any

@@ -21,10 +21,15 @@ layout(binding = 4) uniform sampler2D tDepth;
 layout(location = 0) out uint oLastStep;
 layout(location = 1) out uint oLastKey;
 
+struct Cell {
+  uint unfinished;  // the last layer after which a pixel was not finished
+  uint waiting;     // the last layer in which a pixel waited for balls that were not drawn
+  uint least;       // the least of the pixels' last events, in layers that measure it
+};
 layout(std430, binding = 2) restrict buffer Control {
-  uint uOverflow;    // pixels whose list was too short
-  uint uBox[4];      // around them: least x, y, largest x, y
-  uint uProgress[];  // of each cell: the last layer that left a pixel unfinished
+  uint uOverflow;  // pixels whose list was too short
+  uint uBox[4];    // around them: least x, y, largest x, y
+  Cell uCells[];
 };
 layout(std430, binding = 4) restrict buffer Spilled {
   uint uSpilled[];  // of each pixel of the target: 1 if its list was too short
@@ -39,7 +44,8 @@ layout(std430, binding = 5) restrict buffer Statistics {
   Sums uSums[kSums];  // spread out, so that pixels seldom wait for each other
 };
 
-layout(location = 0) uniform ivec2 uCellLayer;  // which cell this is, and which layer
+layout(location = 0) uniform ivec4 uCell;  // which it is; which layer; the first step that an event of a ball
+                                           // that was not drawn may have; 1 if uCells[].least is wanted
 
 struct Found {
   bool hit;
@@ -85,18 +91,63 @@ Found meetSum(ivec2 texel, uint count, SceneRay ray, Split start, float size, in
   return root <= 1.0 ? Found(true, root * size) : kNothing;
 }
 
-void count(uint status, uint pieces, uint solved, Effort effort, uint mostInPiece) {
-  int at = int(gl_FragCoord.x) / 8 + 13 * (int(gl_FragCoord.y) / 8) & (kSums - 1);
+// What a pixel remembers from layer to layer.
+struct Pixel {
+  uint status;
+  uint events, pieces, solved, mostInPiece;
+  Effort effort;
+};
+
+Pixel freshPixel() {
+  return Pixel(0u, 0u, 0u, 0u, 0u, Effort(0, false, false));
+}
+
+Pixel loadPixel(ivec2 texel) {
+  Pixel p = freshPixel();
+  p.status = uLists[slot(texel, kStatus)];
+  p.events = uLists[slot(texel, kPlace)];
+  uint effort = uLists[slot(texel, kEffort)], solved = uLists[slot(texel, kSolved)];
+  p.pieces = effort >> 16;
+  p.effort.iterations = int(effort & 0xFFFFu);
+  p.mostInPiece = solved >> 16;
+  p.solved = solved & 0xFFFFu;
+  return p;
+}
+
+void storePixel(ivec2 texel, Pixel p) {
+  uLists[slot(texel, kStatus)] = p.status;
+  if ((p.status & kHit) == 0u) uLists[slot(texel, kPlace)] = p.events;
+  uLists[slot(texel, kEffort)] = p.pieces << 16 | uint(p.effort.iterations);
+  uLists[slot(texel, kSolved)] = p.mostInPiece << 16 | p.solved;
+}
+
+void storeHit(ivec2 texel, inout Pixel p, uint step, float offset) {
+  p.status |= kHit;
+  uLists[slot(texel, kPlace)] = step;
+  uLists[slot(texel, kOffset)] = floatBitsToUint(offset);
+}
+
+int sumsOf(ivec2 texel) {
+  return texel.x / 8 + 13 * (texel.y / 8) & (kSums - 1);
+}
+
+// A pixel counts once it is finished; one that is going to be repaired, then.
+void count(ivec2 texel, Pixel p) {
+  int at = sumsOf(texel);
+  if ((p.status & kSpilled) != 0u) {
+    if (uList.z == 0) atomicAdd(uSums[at].overflow, 1u);
+    if (uList.y != 0) return;
+  }
   atomicAdd(uSums[at].pixels, 1u);
-  atomicAdd(uSums[at].pieces, pieces);
-  atomicAdd(uSums[at].iterations, uint(effort.iterations));
-  atomicMax(uSums[at].mostIterations, uint(effort.iterations));
-  atomicAdd(uSums[at].events, uint(uCellLayer.y));
-  atomicAdd(uSums[at].solved, solved);
-  atomicMax(uSums[at].mostInPiece, mostInPiece);
-  if ((status & kHit) != 0u) atomicAdd(uSums[at].hits, 1u);
-  if ((status & kGrazing) != 0u) atomicAdd(uSums[at].grazing, 1u);
-  if ((status & kUnfinished) != 0u) atomicAdd(uSums[at].unfinished, 1u);
+  atomicAdd(uSums[at].events, p.events);
+  atomicAdd(uSums[at].pieces, p.pieces);
+  atomicAdd(uSums[at].iterations, uint(p.effort.iterations));
+  atomicMax(uSums[at].mostIterations, uint(p.effort.iterations));
+  atomicAdd(uSums[at].solved, p.solved);
+  atomicMax(uSums[at].mostInPiece, p.mostInPiece);
+  if ((p.status & kHit) != 0u) atomicAdd(uSums[at].hits, 1u);
+  if ((p.status & kGrazing) != 0u) atomicAdd(uSums[at].grazing, 1u);
+  if ((p.status & kUnfinished) != 0u) atomicAdd(uSums[at].unfinished, 1u);
 }
 
 // The list after an event; false if it is too short.
@@ -107,8 +158,7 @@ bool updateList(ivec2 texel, uint key, inout uint status) {
     if (int(ids) >= uList.x) return false;
     uLists[slot(texel, kIds + int(ids))] = index;
     ++status;
-    atomicMax(uSums[int(gl_FragCoord.x) / 8 + 13 * (int(gl_FragCoord.y) / 8) & (kSums - 1)].longest,
-              ids + 1u);
+    atomicMax(uSums[sumsOf(texel)].longest, ids + 1u);
     return true;
   }
   for (uint i = 0u; i < ids; ++i) {
@@ -130,6 +180,62 @@ void spill(ivec2 texel) {
   uSpilled[at.y * uList.w + at.x] = 1u;
 }
 
+// Whether this pixel is among those to be done again.
+bool isToBeRepaired(ivec2 texel) {
+  ivec2 at = texel + uRegion.xy;
+  bool spilled = uSpilled[at.y * uList.w + at.x] != 0u;
+  uSpilled[at.y * uList.w + at.x] = 0u;
+  return spilled;
+}
+
+// The surface between two events.
+Found search(ivec2 texel, SceneRay ray, uint lastStep, uint lastKey, uint step, inout Pixel p) {
+  uint ids = p.status & kCount;
+  if (ids == 0u) {
+    if ((p.status & kInside) == 0u) {
+      p.status |= kOutside;
+      return kNothing;
+    }
+    uLists[slot(texel, kIds)] = lastKey / 2u - 1u;  // rounding: the exit lies on the last ball's very end
+    ++p.status;
+    return Found(true, 0.0);
+  }
+  Split start = placeOf(lastStep);
+  float size = float(step - lastStep) * uSteps.x;
+  int before = p.effort.iterations;
+  Found found = ids == 1u ? meetCore(uBalls[uLists[slot(texel, kIds)]], ray, start, size, p.status)
+                          : meetSum(texel, ids, ray, start, size, p.status, p.effort);
+  int spent = p.effort.iterations - before;
+  p.pieces = min(p.pieces + 1u, 0xFFFFu);
+  if (spent > 0) p.solved = min(p.solved + 1u, 0xFFFFu);
+  p.mostInPiece = max(p.mostInPiece, uint(spent));
+  p.effort.iterations = min(p.effort.iterations, 0xFFFF);
+  if (p.effort.grazing) p.status |= kGrazing;
+  if (p.effort.unfinished) p.status |= kUnfinished;
+  return found;
+}
+
+// Takes in the next event; true if that was the last.
+bool advance(ivec2 texel, SceneRay ray, uint lastStep, uint lastKey, uint step, uint key, inout Pixel p) {
+  if (step >= kNoEvent) return true;
+  ++p.events;
+  if (step > lastStep) {
+    Found found = search(texel, ray, lastStep, lastKey, step, p);
+    if (found.hit) {
+      storeHit(texel, p, lastStep, found.offset);
+      return true;
+    }
+    // The rest is hidden by what is drawn already.
+    if (step > hiddenFrom(ray, texelFetch(tDepth, texel + uRegion.xy, 0).r)) return true;
+  }
+  if (updateList(texel, key, p.status)) return false;
+  spill(texel);
+  p.status |= kSpilled;
+  // As the paper does (§7): what enters is taken for the surface.
+  if (uList.y == 0) storeHit(texel, p, step, 0.0);
+  return true;
+}
+
 void main() {
   ivec2 texel = ivec2(gl_FragCoord.xy);
   uint lastStep = texelFetch(tLastStep, texel, 0).r;
@@ -137,86 +243,38 @@ void main() {
   uint lastKey = texelFetch(tLastKey, texel, 0).r;
   uint step = floatBitsToUint(texelFetch(tEvent, texel, 0).r);
   uint key = texelFetch(tEventKey, texel, 0).r;
-  SceneRay ray = sceneRay(vec2(texel + uRegion.xy) + 0.5 + uView.tile.xy);
-
   bool fresh = lastKey == 0u;
-  uint status = 0u, pieces = 0u, solved = 0u, mostInPiece = 0u;
-  Effort effort = Effort(0, false, false);
-  bool finished = step >= kNoEvent;
+
+  oLastStep = lastStep;
+  oLastKey = lastKey;
+  if (fresh && uList.z != 0 && !isToBeRepaired(texel)) {
+    uLists[slot(texel, kStatus)] = 0u;
+    oLastStep = kFinished;
+    return;
+  }
+  if (step >= uint(uCell.z)) {  // a ball that was not drawn may come before
+    if (fresh && uList.z != 0) uSpilled[(texel.y + uRegion.y) * uList.w + texel.x + uRegion.x] = 1u;
+    uCells[uCell.x].unfinished = uint(uCell.y);
+    uCells[uCell.x].waiting = uint(uCell.y);
+    if (uCell.w != 0) atomicMin(uCells[uCell.x].least, lastStep);
+    return;
+  }
+  SceneRay ray = sceneRay(vec2(texel + uRegion.xy) + 0.5 + uView.tile.xy);
+  Pixel p = freshPixel();
   if (fresh) {
     lastStep = firstStep(ray);
-    ivec2 at = texel + uRegion.xy;
-    if (uList.z != 0) {
-      if (uSpilled[at.y * uList.w + at.x] == 0u) finished = true;
-      uSpilled[at.y * uList.w + at.x] = 0u;
-    }
   } else {
-    status = uLists[slot(texel, kStatus)];
-    uint effortWord = uLists[slot(texel, kEffort)], solvedWord = uLists[slot(texel, kSolved)];
-    pieces = effortWord >> 16;
-    effort.iterations = int(effortWord & 0xFFFFu);
-    mostInPiece = solvedWord >> 16;
-    solved = solvedWord & 0xFFFFu;
+    p = loadPixel(texel);
   }
-
-  Found found = kNothing;
-  if (!finished && step > lastStep) {
-    Split start = placeOf(lastStep);
-    float size = float(step - lastStep) * uSteps.x;
-    uint ids = status & kCount;
-    int before = effort.iterations;
-    if (ids == 0u) {
-      if ((status & (kInside | kOutside)) == 0u) status |= kOutside;
-      if ((status & kInside) != 0u) {  // rounding: the exit lies on the last ball's very end
-        found.hit = true;
-        uLists[slot(texel, kIds)] = lastKey / 2u - 1u;
-        ++status;
-      }
-    } else if (ids == 1u) {
-      found = meetCore(uBalls[uLists[slot(texel, kIds)]], ray, start, size, status);
-    } else {
-      found = meetSum(texel, ids, ray, start, size, status, effort);
-    }
-    int spent = effort.iterations - before;
-    if (ids > 0u) pieces = min(pieces + 1u, 0xFFFFu);
-    if (spent > 0) solved = min(solved + 1u, 0xFFFFu);
-    mostInPiece = max(mostInPiece, uint(spent));
-    if (effort.grazing) status |= kGrazing;
-    if (effort.unfinished) status |= kUnfinished;
-    effort.iterations = min(effort.iterations, 0xFFFF);
-  }
-  if (found.hit) {
-    status |= kHit;
-    uLists[slot(texel, kPlace)] = lastStep;
-    uLists[slot(texel, kOffset)] = floatBitsToUint(found.offset);
-    finished = true;
-  } else if (!finished) {
-    if (step > lastStep && step > hiddenFrom(ray, texelFetch(tDepth, texel + uRegion.xy, 0).r)) {
-      finished = true;  // the rest is hidden by what is drawn already
-    } else if (!updateList(texel, key, status)) {
-      finished = true;
-      spill(texel);
-      status |= kSpilled;
-      if (uList.y == 0) {  // as the paper does (§7): what enters is taken for the surface
-        status |= kHit;
-        uLists[slot(texel, kPlace)] = step;
-        uLists[slot(texel, kOffset)] = 0u;
-      }
-    }
-  }
-  uLists[slot(texel, kStatus)] = status;
-  uLists[slot(texel, kEffort)] = pieces << 16 | uint(effort.iterations);
-  uLists[slot(texel, kSolved)] = mostInPiece << 16 | solved;
+  bool finished = advance(texel, ray, lastStep, lastKey, step, key, p);
+  storePixel(texel, p);
   if (finished) {
-    bool repaired = (status & kSpilled) != 0u && uList.y != 0;
-    if (!(fresh && step >= kNoEvent) && !(fresh && uList.z != 0) && !repaired)
-      count(status, pieces, solved, effort, mostInPiece);
-    if ((status & kSpilled) != 0u && uList.z == 0) atomicAdd(uSums[0].overflow, 1u);
+    if (p.events > 0u) count(texel, p);
     oLastStep = kFinished;
-    oLastKey = key;
-  } else {
-    uProgress[uCellLayer.x] = uint(uCellLayer.y);
-    oLastStep = step;
-    oLastKey = key;
+    return;
   }
+  uCells[uCell.x].unfinished = uint(uCell.y);
+  if (uCell.w != 0) atomicMin(uCells[uCell.x].least, step);
+  oLastStep = step;
+  oLastKey = key;
 }
