@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "core/error.h"
+#include "render/gl/storage.h"
 #include "render/surface/peel_regions.h"
 #include "render/surface/projected_field.h"
 
@@ -25,14 +26,15 @@ constexpr SurfaceParameter kParameters[] = {
      0, 1, true},
     {"culling", "1: balls behind the cores of others are not drawn (only if no coefficient is negative)", 1,
      0, 1, true},
-    {"tiles", "side of the grid of screen tiles that are peeled each for itself; 0: the screen is one", 8, 0,
+    {"tiles", "side of the grid of screen tiles that are peeled each for itself; 0: the screen is one", 16, 0,
      256, true},
     {"clipping", "1: Bezier clipping; 0: halving", 1, 0, 1, true},
 };
 
 // Storage blocks end at 128 MiB on the reference driver.
 constexpr std::int64_t kListBytes = std::int64_t{96} << 20;
-constexpr int kHeaderSlots = 5;  // shaders/include/bezier_lists.glsl
+constexpr int kHeaderSlots = 5;     // shaders/include/bezier_lists.glsl
+constexpr int kBallsPerRow = 1024;  // shaders/include/field.glsl
 constexpr int kListGrowth = 8;
 // Of 0x20000000 steps on either side some are left out (shaders/include/bezier.glsl).
 constexpr double kSteps = 5.2e8;
@@ -65,36 +67,6 @@ struct Sums {
   std::uint32_t solved, mostInPiece, hits, longest;
 };
 constexpr int kSumCount = 64;
-
-// A buffer that grows.
-class Storage {
- public:
-  // Room for so many bytes; what was in it may be lost.
-  void reserve(std::uint64_t bytes) {
-    if (buffer_.bytes < bytes) {
-      buffer_ = {};
-      buffer_ = gl::Buffer::updatable(std::max<std::uint64_t>(bytes, 256));
-    }
-  }
-  void write(const void* data, std::uint64_t bytes, std::uint64_t offset = 0) {
-    if (bytes > 0)
-      glNamedBufferSubData(buffer_.object.name(), static_cast<GLintptr>(offset),
-                           static_cast<GLsizeiptr>(bytes), data);
-  }
-  void read(void* data, std::uint64_t bytes, std::uint64_t offset = 0) const {
-    glGetNamedBufferSubData(buffer_.object.name(), static_cast<GLintptr>(offset),
-                            static_cast<GLsizeiptr>(bytes), data);
-  }
-  void zero() {
-    glClearNamedBufferData(buffer_.object.name(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
-  }
-  void bind(GLenum target, GLuint binding) const { glBindBufferBase(target, binding, buffer_.object.name()); }
-  unsigned name() const { return buffer_.object.name(); }
-  std::uint64_t bytes() const { return buffer_.bytes; }
-
- private:
-  gl::Buffer buffer_;
-};
 
 // Textures and framebuffers of one region.
 struct RegionTargets {
@@ -141,18 +113,26 @@ class Bezier : public SurfaceMethod {
     double step;  // length of a step on the ray [Å]
     std::vector<PeelWindow> windows;
     std::vector<StretchRange> stretches;
+    std::vector<std::size_t> active;  // cells
+    std::vector<StepInstance> steps;
+    bool measured = false;
   };
 
   void draw(const PassContext& context, ShaderLibrary& shaders, const View& view, const glm::dvec3& origin,
             const Tile& tile, glm::vec2 sampleShift, const GBufferRefs& gbuffer);
+  void uploadBallTexture(const std::vector<ProjectedBall>& balls);
   std::int64_t mostPixels(int list) const;
   void drawRegion(Frame& frame, const ScreenRect& rect, int list, bool again);
   void setUniforms(const Frame& frame, const Region& region);
   void uploadInstances(const Region& region);
   void cull(Frame& frame, Region& region);
   void peel(Frame& frame, Region& region);
-  void peelLayer(Frame& frame, const Region& region, const std::vector<std::size_t>& active);
-  void step(Frame& frame, const Region& region, const std::vector<std::size_t>& active, int layer);
+  void listUnfinished(const Frame& frame, Region& region, const std::vector<std::uint32_t>& blocks,
+                      std::uint32_t layer);
+  void moveWindows(const Frame& frame, Region& region, const std::vector<CellState>& states,
+                   std::uint32_t layer);
+  void peelLayer(Frame& frame, const Region& region);
+  void step(Frame& frame, const Region& region, int layer);
   int firstNotPassed(const Frame& frame, const Region& region, std::size_t cell, std::uint32_t least) const;
   void shade(Frame& frame, const Region& region);
   void drawCells(const Region& region, const std::vector<PeelCell>& cells) const;
@@ -163,8 +143,9 @@ class Bezier : public SurfaceMethod {
   bool repair_, culling_, clipping_;
   const MetaballField* field_ = nullptr;
   std::vector<float> coreShares_;
-  gl::Object vertexArray_;
-  Storage instances_, balls_, lists_, control_, seen_, spilled_, statistics_;
+  gl::Object vertexArray_, stepArray_;
+  gl::Storage instances_, steps_, blocks_, balls_, lists_, control_, seen_, spilled_, statistics_;
+  gl::Texture ballTexture_;
   gl::Buffer fieldUniforms_, bezierUniforms_;
   // Counted here rather than by shaders.
   double ballsInView_ = 0, ballsLeft_ = 0, layers_ = 0, cellLayers_ = 0, instancesDrawn_ = 0, repairs_ = 0;
@@ -203,6 +184,17 @@ void Bezier::prepare(const MetaballField& field) {
   glEnableVertexArrayAttrib(name, 4);
   glVertexArrayAttribIFormat(name, 4, 2, GL_UNSIGNED_INT, offsetof(PeelInstance, ball));
   glVertexArrayAttribBinding(name, 4, 0);
+
+  glCreateVertexArrays(1, &name);
+  stepArray_ = gl::Object(gl::ObjectKind::vertexArray, name);
+  glVertexArrayBindingDivisor(name, 0, 1);
+  glEnableVertexArrayAttrib(name, 0);
+  glVertexArrayAttribFormat(name, 0, 4, GL_FLOAT, GL_FALSE, offsetof(StepInstance, box));
+  glVertexArrayAttribBinding(name, 0, 0);
+  glEnableVertexArrayAttrib(name, 1);
+  glVertexArrayAttribIFormat(name, 1, 2, GL_INT, offsetof(StepInstance, cell));
+  glVertexArrayAttribBinding(name, 1, 0);
+
   fieldUniforms_ = gl::Buffer::updatable(sizeof(FieldBlock));
   bezierUniforms_ = gl::Buffer::updatable(sizeof(BezierBlock));
   statistics_.reserve(sizeof(Sums) * kSumCount);
@@ -243,20 +235,37 @@ void Bezier::draw(const PassContext& context, ShaderLibrary& shaders, const View
   const std::uint64_t ballBytes = frame.projected.balls.size() * sizeof(ProjectedBall);
   balls_.reserve(ballBytes);
   balls_.write(frame.projected.balls.data(), ballBytes);
+  uploadBallTexture(frame.projected.balls);
   spilled_.reserve(static_cast<std::uint64_t>(frame.screen.pixels()) * 4);
   spilled_.zero();
   fieldUniforms_.update(&frame.projected.block);
   glBindBufferBase(GL_UNIFORM_BUFFER, 1, fieldUniforms_.object.name());
   glBindBufferBase(GL_UNIFORM_BUFFER, 2, bezierUniforms_.object.name());
-  balls_.bind(GL_SHADER_STORAGE_BUFFER, 0);
-  spilled_.bind(GL_SHADER_STORAGE_BUFFER, 4);
-  statistics_.bind(GL_SHADER_STORAGE_BUFFER, 5);
+  balls_.bindStorage(0);
+  spilled_.bindStorage(4);
+  statistics_.bindStorage(5);
 
   for (const ScreenRect& rect : splitRect(frame.screen, mostPixels(list_)))
     drawRegion(frame, rect, list_, false);
   ballsInView_ += static_cast<double>(frame.projected.balls.size());
   ballsLeft_ += static_cast<double>(std::count(frame.left.begin(), frame.left.end(), true));
   context.bindTarget();
+}
+
+// tBalls of shaders/include/field.glsl; colours and ids, which are no floats, are not read from it.
+void Bezier::uploadBallTexture(const std::vector<ProjectedBall>& balls) {
+  const int count = static_cast<int>(balls.size()), rows = (count + kBallsPerRow - 1) / kBallsPerRow;
+  if (ballTexture_.desc.height < rows) {
+    ballTexture_ = {};
+    ballTexture_ = gl::Texture::make({gl::TextureFormat::rgba32f, 4 * kBallsPerRow, rows});
+  }
+  const auto upload = [&](int row, int height, int columns) {
+    if (height > 0 && columns > 0)
+      glTextureSubImage2D(ballTexture_.object.name(), 0, 0, row, 4 * columns, height, GL_RGBA, GL_FLOAT,
+                          balls.data() + static_cast<std::size_t>(row) * kBallsPerRow);
+  };
+  upload(0, count / kBallsPerRow, kBallsPerRow);
+  upload(count / kBallsPerRow, 1, count % kBallsPerRow);
 }
 
 std::int64_t Bezier::mostPixels(int list) const {
@@ -266,7 +275,7 @@ std::int64_t Bezier::mostPixels(int list) const {
 // The region's surface into the G-buffer. Pixels whose list is too short are left out and, if they are to be
 // repaired, drawn again with a longer one; `again`: only those that were left out.
 void Bezier::drawRegion(Frame& frame, const ScreenRect& rect, int list, bool again) {
-  Region region{rect, list, again, {}, {}, {}, 1, {}, {}};
+  Region region{rect, list, again, {}, {}, {}, 1, {}, {}, {}, {}};
   region.step = std::exp2(std::ceil(std::log2(frame.projected.reach / kSteps)));
   region.cells = makeCells(frame.projected, frame.screen, rect, tiles_, region.instances);
   if (region.cells.empty()) return;
@@ -285,12 +294,12 @@ void Bezier::drawRegion(Frame& frame, const ScreenRect& rect, int list, bool aga
 
   lists_.reserve(static_cast<std::uint64_t>(rect.pixels()) * 4 *
                  static_cast<std::uint64_t>(list + kHeaderSlots));
-  lists_.bind(GL_SHADER_STORAGE_BUFFER, 1);
+  lists_.bindStorage(1);
   control_.reserve(sizeof(Control) + sizeof(CellState) * region.cells.size());
   control_.zero();
   const Control fresh;
   control_.write(&fresh, sizeof fresh);
-  control_.bind(GL_SHADER_STORAGE_BUFFER, 2);
+  control_.bindStorage(2);
   setUniforms(frame, region);
   uploadInstances(region);
   glViewport(0, 0, rect.width, rect.height);
@@ -362,7 +371,7 @@ void Bezier::cull(Frame& frame, Region& region) {
 
   seen_.reserve(region.instances.size() * 4);
   seen_.zero();
-  seen_.bind(GL_SHADER_STORAGE_BUFFER, 3);
+  seen_.bindStorage(3);
   glBindFramebuffer(GL_FRAMEBUFFER, region.targets.step);  // nothing is written to it
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
   glBindTextureUnit(0, region.targets.events->object.name());
@@ -385,36 +394,65 @@ void Bezier::peel(Frame& frame, Region& region) {
   glClearBufferuiv(GL_COLOR, 0, zero);
   glClearBufferuiv(GL_COLOR, 1, zero);
   const std::size_t cells = region.cells.size();
-  std::vector<std::size_t> active(cells);
-  std::iota(active.begin(), active.end(), std::size_t{0});
+  region.active.resize(cells);
+  std::iota(region.active.begin(), region.active.end(), std::size_t{0});
   region.windows.resize(cells);
-  region.stretches.clear();
   for (std::size_t i = 0; i < cells; ++i) {
-    region.windows[i] = {0, std::min(kFirstWindow, region.cells[i].count)};
+    region.windows[i] = {0, std::min(kFirstWindow, region.cells[i].count), region.cells[i].rect};
     region.stretches.push_back(stretchRange(frame.view, frame.tile, region.rect, region.cells[i].rect));
   }
+  // Blocks are read back layer by layer; at first all count as marked with layer 0.
+  std::vector<std::uint32_t> blocks(static_cast<std::size_t>(blocksAlong(region.rect.width)) *
+                                    static_cast<std::size_t>(blocksAlong(region.rect.height)));
+  blocks_.reserve(blocks.size() * 4);
+  blocks_.write(blocks.data(), blocks.size() * 4);
+  blocks_.bindStorage(6);
   std::vector<CellState> states(cells);
-  for (int layer = 1; !active.empty(); ++layer) {
-    const bool measured = layer % kLeastPeriod == 0;
-    if (measured) {
+  for (int layer = 1; !region.active.empty(); ++layer) {
+    region.measured = layer % kLeastPeriod == 0;
+    if (region.measured) {
       for (CellState& state : states) state.least = 0xFFFFFFFFu;
       control_.write(states.data(), states.size() * sizeof(CellState), sizeof(Control));
     }
-    peelLayer(frame, region, active);
-    step(frame, region, active, layer);
+    listUnfinished(frame, region, blocks, static_cast<std::uint32_t>(layer) - 1);
+    peelLayer(frame, region);
+    step(frame, region, layer);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
     control_.read(states.data(), states.size() * sizeof(CellState), sizeof(Control));
+    blocks_.read(blocks.data(), blocks.size() * 4);
     ++layers_;
-    cellLayers_ += static_cast<double>(active.size());
-    const auto now = static_cast<std::uint32_t>(layer);
-    std::erase_if(active, [&](std::size_t i) { return states[i].unfinished != now; });
-    for (const std::size_t i : active) {
-      PeelWindow& window = region.windows[i];
-      if (measured) window.from = firstNotPassed(frame, region, i, states[i].least);
-      if (states[i].waiting != now) continue;
-      const int more = std::max(kFirstWindow, 2 * (window.to - window.from));
-      window.to = std::min(region.cells[i].count, window.from + more);
+    cellLayers_ += static_cast<double>(region.active.size());
+    moveWindows(frame, region, states, static_cast<std::uint32_t>(layer));
+  }
+}
+
+// What has to be looked at in the next layer.
+void Bezier::listUnfinished(const Frame& frame, Region& region, const std::vector<std::uint32_t>& blocks,
+                            std::uint32_t layer) {
+  region.steps.clear();
+  for (const std::size_t i : region.active) {
+    const PeelCell& cell = region.cells[i];
+    PeelWindow& window = region.windows[i];
+    double bound = kMostStep;
+    if (window.to < cell.count) {
+      const PeelInstance& next = region.instances[static_cast<std::size_t>(cell.first + window.to)];
+      bound = stepAtLeast(frame.projected.depths[next.ball].x, region.stretches[i], region.step);
     }
+    const StepInstance model{{}, static_cast<std::int32_t>(i), static_cast<std::int32_t>(bound)};
+    addUnfinished(cell, region.rect, blocks, layer, model, region.steps, window.reach);
+  }
+}
+
+// Cells that are finished are no longer active; the others' windows follow their pixels.
+void Bezier::moveWindows(const Frame& frame, Region& region, const std::vector<CellState>& states,
+                         std::uint32_t layer) {
+  std::erase_if(region.active, [&](std::size_t i) { return states[i].unfinished != layer; });
+  for (const std::size_t i : region.active) {
+    PeelWindow& window = region.windows[i];
+    if (region.measured) window.from = firstNotPassed(frame, region, i, states[i].least);
+    if (states[i].waiting != layer) continue;
+    const int more = std::max(kFirstWindow, 2 * (window.to - window.from));
+    window.to = std::min(region.cells[i].count, window.from + more);
   }
 }
 
@@ -430,7 +468,7 @@ int Bezier::firstNotPassed(const Frame& frame, const Region& region, std::size_t
   return at;
 }
 
-void Bezier::peelLayer(Frame& frame, const Region& region, const std::vector<std::size_t>& active) {
+void Bezier::peelLayer(Frame& frame, const Region& region) {
   const float farthest = 1.0f;
   glBindFramebuffer(GL_FRAMEBUFFER, region.targets.peel);
   glScissor(0, 0, region.rect.width, region.rect.height);
@@ -441,10 +479,9 @@ void Bezier::peelLayer(Frame& frame, const Region& region, const std::vector<std
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LESS);
   std::vector<PeelCell> cells;
-  for (const std::size_t i : active) {
-    cells.push_back(region.cells[i]);
-    cells.back().first += region.windows[i].from;
-    cells.back().count = region.windows[i].to - region.windows[i].from;
+  for (const std::size_t i : region.active) {
+    const PeelWindow& window = region.windows[i];
+    cells.push_back({window.reach, region.cells[i].first + window.from, window.to - window.from});
     instancesDrawn_ += cells.back().count;
   }
   drawCells(region, cells);
@@ -453,26 +490,24 @@ void Bezier::peelLayer(Frame& frame, const Region& region, const std::vector<std
 
 // Each texel of the last events is read and written by one and the same fragment, which OpenGL 4.5 allows
 // (§9.3.1); glTextureBarrier() comes between layers.
-void Bezier::step(Frame& frame, const Region& region, const std::vector<std::size_t>& active, int layer) {
+void Bezier::step(Frame& frame, const Region& region, int layer) {
   glBindFramebuffer(GL_FRAMEBUFFER, region.targets.step);
   glTextureBarrier();
   glBindTextureUnit(2, region.targets.events->object.name());
   glBindTextureUnit(3, region.targets.eventKeys->object.name());
   glBindTextureUnit(4, frame.context.texture(frame.gbuffer.depth).object.name());
-  glUseProgram(frame.shaders.program("post/fullscreen.vert", "surface/bezier_step.frag", frame.kernelFlags));
-  const int measured = layer % kLeastPeriod == 0 ? 1 : 0;
-  for (const std::size_t i : active) {
-    const PeelCell& cell = region.cells[i];
-    const int next = region.windows[i].to;
-    double bound = kMostStep;
-    if (next < cell.count) {
-      const PeelInstance& instance = region.instances[static_cast<std::size_t>(cell.first + next)];
-      bound = stepAtLeast(frame.projected.depths[instance.ball].x, region.stretches[i], region.step);
-    }
-    scissorTo(cell, {});
-    glUniform4i(0, static_cast<GLint>(i), layer, static_cast<GLint>(bound), measured);
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-  }
+  glBindTextureUnit(5, ballTexture_.object.name());
+  const std::uint64_t bytes = region.steps.size() * sizeof(StepInstance);
+  steps_.reserve(bytes);
+  steps_.write(region.steps.data(), bytes);
+  glVertexArrayVertexBuffer(stepArray_.name(), 0, steps_.name(), 0, sizeof(StepInstance));
+  glBindVertexArray(stepArray_.name());
+  glUseProgram(
+      frame.shaders.program("surface/bezier_step.vert", "surface/bezier_step.frag", frame.kernelFlags));
+  glUniform2f(0, static_cast<float>(region.rect.width), static_cast<float>(region.rect.height));
+  glUniform2i(1, layer, region.measured ? 1 : 0);
+  glScissor(0, 0, region.rect.width, region.rect.height);
+  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(region.steps.size()));
 }
 
 void Bezier::shade(Frame& frame, const Region& region) {
@@ -536,7 +571,7 @@ std::vector<ResourceStats> Bezier::buffers() const {
   const auto add = [&](const char* name, std::uint64_t bytes) {
     if (bytes > 0) out.push_back({name, bytes});
   };
-  add("surface: balls", balls_.bytes());
+  add("surface: balls", balls_.bytes() + (ballTexture_.object ? ballTexture_.bytes() : 0));
   add("surface: instances", instances_.bytes());
   add("surface: lists", lists_.bytes());
   add("surface: pixels spilled", spilled_.bytes());

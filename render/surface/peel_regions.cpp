@@ -126,6 +126,39 @@ double stepAtMost(double depth, const StretchRange& stretch, double step) {
   return kMiddleStep + steps + kSlackSteps + kSlackShare * std::abs(steps);
 }
 
+void addUnfinished(const PeelCell& cell, const ScreenRect& region, const std::vector<std::uint32_t>& blocks,
+                   std::uint32_t layer, const StepInstance& model, std::vector<StepInstance>& out,
+                   ScreenRect& reach) {
+  const ScreenRect& r = cell.rect;
+  const int right = r.x + r.width, top = r.y + r.height, along = blocksAlong(region.width);
+  int lowX = right, lowY = top, highX = r.x, highY = r.y;
+  for (int y = r.y; y < top;) {
+    const int row = y / kBlockSide, nextY = std::min((row + 1) * kBlockSide, top);
+    int start = right;  // of the run that is open
+    const auto close = [&](int end) {
+      if (start >= end) return;
+      out.push_back(model);
+      out.back().box = glm::vec4(start, y, end, nextY);
+      lowX = std::min(lowX, start);
+      highX = std::max(highX, end);
+      lowY = std::min(lowY, y);
+      highY = nextY;
+      start = right;
+    };
+    for (int x = r.x; x < right;) {
+      const int column = x / kBlockSide;
+      const bool alive = blocks[static_cast<std::size_t>(row) * static_cast<std::size_t>(along) +
+                                static_cast<std::size_t>(column)] == layer;
+      if (alive && start == right) start = x;
+      if (!alive) close(x);
+      x = std::min((column + 1) * kBlockSide, right);
+    }
+    close(right);
+    y = nextY;
+  }
+  reach = {lowX, lowY, std::max(highX - lowX, 0), std::max(highY - lowY, 0)};
+}
+
 void keepSeen(std::vector<PeelCell>& cells, std::vector<PeelInstance>& instances,
               const std::vector<std::uint32_t>& seen) {
   std::size_t kept = 0;

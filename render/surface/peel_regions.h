@@ -35,6 +35,7 @@ struct PeelCell {
 /// last event of every pixel, and a pixel whose next event is not before `to`'s nearest point waits.
 struct PeelWindow {
   int from = 0, to = 0;
+  ScreenRect reach;  ///< the part of the cell that has pixels which are not finished
 };
 
 /// A region's cells that any ball reaches: of a grid of `side` x `side` over the target (0: the region is one
@@ -55,6 +56,23 @@ inline constexpr double kMiddleStep = 0x20000000, kFirstStep = 0x00800000, kMost
 /// No ray of a cell is before this step at so many Å below the plane; none is after it.
 double stepAtLeast(double depth, const StretchRange& stretch, double step);
 double stepAtMost(double depth, const StretchRange& stretch, double step);
+
+/// Side of a block of pixels for which it is known whether all of them are finished (bezier_step.frag).
+inline constexpr int kBlockSide = 8;
+inline int blocksAlong(int pixels) {
+  return (pixels + kBlockSide - 1) / kBlockSide;
+}
+
+/// Instance of shaders/surface/bezier_step.vert.
+struct StepInstance {
+  glm::vec4 box;
+  std::int32_t cell, bound;
+};
+
+/// Adds the parts of a cell in blocks that are marked with `layer`; `reach` becomes the box around them.
+void addUnfinished(const PeelCell& cell, const ScreenRect& region, const std::vector<std::uint32_t>& blocks,
+                   std::uint32_t layer, const StepInstance& model, std::vector<StepInstance>& out,
+                   ScreenRect& reach);
 
 /// Keeps the instances that were seen, and the cells that have any.
 void keepSeen(std::vector<PeelCell>& cells, std::vector<PeelInstance>& instances,

@@ -44,8 +44,12 @@ layout(std430, binding = 5) restrict buffer Statistics {
   Sums uSums[kSums];  // spread out, so that pixels seldom wait for each other
 };
 
-layout(location = 0) uniform ivec4 uCell;  // which it is; which layer; the first step that an event of a ball
-                                           // that was not drawn may have; 1 if uCells[].least is wanted
+layout(std430, binding = 6) writeonly restrict buffer Blocks {
+  uint uBlocks[];  // of each 8 x 8 pixels of the region: the last layer after which one was not finished
+};
+
+layout(location = 0) flat in ivec2 vCell;
+layout(location = 1) uniform ivec2 uLayer;  // which; 1 if uCells[].least is wanted
 
 struct Found {
   bool hit;
@@ -76,7 +80,7 @@ Found meetSum(ivec2 texel, uint count, SceneRay ray, Split start, float size, in
   Polygon sum = constantPolygon(-uField.x);
   float least = 1e30;
   for (uint i = 0u; i < count; ++i) {
-    Ball ball = uBalls[uLists[slot(texel, kIds + int(i))]];
+    Ball ball = fetchBall(uLists[slot(texel, kIds + int(i))]);
     BallRay b = ballOnRay(ball.projection, ray);
     float middle = placeBetween(start, b.middle);
     addShare(sum, windowOn(middle, b.halfChord2, ball.inverseR2, 0.0, size), ball.coefficient);
@@ -203,7 +207,7 @@ Found search(ivec2 texel, SceneRay ray, uint lastStep, uint lastKey, uint step, 
   Split start = placeOf(lastStep);
   float size = float(step - lastStep) * uSteps.x;
   int before = p.effort.iterations;
-  Found found = ids == 1u ? meetCore(uBalls[uLists[slot(texel, kIds)]], ray, start, size, p.status)
+  Found found = ids == 1u ? meetCore(fetchBall(uLists[slot(texel, kIds)]), ray, start, size, p.status)
                           : meetSum(texel, ids, ray, start, size, p.status, p.effort);
   int spent = p.effort.iterations - before;
   p.pieces = min(p.pieces + 1u, 0xFFFFu);
@@ -236,6 +240,12 @@ bool advance(ivec2 texel, SceneRay ray, uint lastStep, uint lastKey, uint step, 
   return true;
 }
 
+// There is more to do for this pixel. Whoever writes, writes the same.
+void stay(ivec2 texel) {
+  uCells[vCell.x].unfinished = uint(uLayer.x);
+  uBlocks[(texel.y / 8) * ((uRegion.z + 7) / 8) + texel.x / 8] = uint(uLayer.x);
+}
+
 void main() {
   ivec2 texel = ivec2(gl_FragCoord.xy);
   uint lastStep = texelFetch(tLastStep, texel, 0).r;
@@ -252,11 +262,11 @@ void main() {
     oLastStep = kFinished;
     return;
   }
-  if (step >= uint(uCell.z)) {  // a ball that was not drawn may come before
+  if (step >= uint(vCell.y)) {  // a ball that was not drawn may come before
     if (fresh && uList.z != 0) uSpilled[(texel.y + uRegion.y) * uList.w + texel.x + uRegion.x] = 1u;
-    uCells[uCell.x].unfinished = uint(uCell.y);
-    uCells[uCell.x].waiting = uint(uCell.y);
-    if (uCell.w != 0) atomicMin(uCells[uCell.x].least, lastStep);
+    stay(texel);
+    uCells[vCell.x].waiting = uint(uLayer.x);
+    if (uLayer.y != 0) atomicMin(uCells[vCell.x].least, lastStep);
     return;
   }
   SceneRay ray = sceneRay(vec2(texel + uRegion.xy) + 0.5 + uView.tile.xy);
@@ -273,8 +283,8 @@ void main() {
     oLastStep = kFinished;
     return;
   }
-  uCells[uCell.x].unfinished = uint(uCell.y);
-  if (uCell.w != 0) atomicMin(uCells[uCell.x].least, step);
+  stay(texel);
+  if (uLayer.y != 0) atomicMin(uCells[vCell.x].least, step);
   oLastStep = step;
   oLastKey = key;
 }
