@@ -75,7 +75,6 @@ float firstRoot(Polygon whole, float width, inout Effort effort) {
     if (now.p.c[0] > 0.0) return now.start;
     int changes = signChanges(now.p);
     bool narrow = now.end - now.start <= width;
-    if (changes > 0) ++effort.iterations;
     if (changes > 0 && narrow) {
       effort.grazing = effort.grazing || changes > 1;
       float low = now.p.c[0], high = now.p.c[degree];
@@ -103,6 +102,7 @@ float firstRoot(Polygon whole, float width, inout Effort effort) {
       }
       continue;
     }
+    ++effort.iterations;
     Polygon left, right;
 #ifndef PLAIN
     if (changes == 1) {
