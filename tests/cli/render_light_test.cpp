@@ -64,7 +64,8 @@ TEST_F(RenderLight, occlusionDarkensByRadiusAndStrength) {
   EXPECT_LT(light({}), light({"--occlusion-radius", "4"}));
   EXPECT_NEAR(light({"--occlusion-directions", "128"}), light({"--occlusion-directions", "32"}), 0.01);
   EXPECT_EQ(passes(stats(kProtein, {"--occlusion", "on", "--quadrics", "splat"})),
-            (std::vector<std::string>{"occlusion maps", "spheres", "occlusion", "shade"}));
+            (std::vector<std::string>{"occlusion maps", "spheres", "occlusion depth", "occlusion",
+                                      "occlusion gather", "shade"}));
 }
 
 TEST_F(RenderLight, wrongValuesNameWhatIsAllowed) {
