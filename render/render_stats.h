@@ -37,7 +37,8 @@ struct SurfaceStats {
   std::uint64_t notConverged = 0;  ///< pixels whose iteration ended without its tolerance
   /// What only this method counts: "balls left after culling", "layers peeled".
   std::vector<std::pair<std::string, double>> details;
-  /// Adds counts, takes the larger of the largest; details are summed by name.
+  /// Adds counts, takes the larger of the largest, which details are whose name begins with "most" or
+  /// "longest".
   void add(const SurfaceStats& other);
 };
 

@@ -19,6 +19,8 @@ void SurfaceStats::add(const SurfaceStats& other) {
     const auto found = std::find_if(details.begin(), details.end(), same);
     if (found == details.end()) {
       details.emplace_back(name, value);
+    } else if (name.starts_with("most") || name.starts_with("longest")) {
+      found->second = std::max(found->second, value);
     } else {
       found->second += value;
     }

@@ -3,7 +3,6 @@
 #include <glad/gl.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstddef>
@@ -11,6 +10,7 @@
 
 #include "core/error.h"
 #include "render/gl/storage.h"
+#include "render/surface/bezier_statistics.h"
 #include "render/surface/peel_regions.h"
 #include "render/surface/projected_field.h"
 
@@ -61,13 +61,6 @@ constexpr int kFirstWindow = 32;
 // Every so many layers it is found out which balls all pixels have passed.
 constexpr int kLeastPeriod = 8;
 
-// Statistics of shaders/surface/bezier_step.frag.
-struct Sums {
-  std::uint32_t pixels, pieces, iterations, mostIterations, overflow, grazing, unfinished, events;
-  std::uint32_t solved, mostInPiece, hits, longest;
-};
-constexpr int kSumCount = 64;
-
 // Textures and framebuffers of one region.
 struct RegionTargets {
   TextureLease events, eventKeys, lastSteps, lastKeys;
@@ -86,7 +79,7 @@ class Bezier : public SurfaceMethod {
 
   void prepare(const MetaballField& field) override;
   void addPasses(FrameGraph& graph, ShaderLibrary& shaders, const SurfaceTarget& target) override;
-  SurfaceStats takeStats() override;
+  SurfaceStats takeStats() override { return statistics_.take(); }
   std::vector<ResourceStats> buffers() const override;
 
  private:
@@ -144,11 +137,10 @@ class Bezier : public SurfaceMethod {
   const MetaballField* field_ = nullptr;
   std::vector<float> coreShares_;
   gl::Object vertexArray_, stepArray_;
-  gl::Storage instances_, steps_, blocks_, balls_, lists_, control_, seen_, spilled_, statistics_;
+  gl::Storage instances_, steps_, blocks_, balls_, lists_, control_, seen_, spilled_;
+  BezierStatistics statistics_;
   gl::Texture ballTexture_;
   gl::Buffer fieldUniforms_, bezierUniforms_;
-  // Counted here rather than by shaders.
-  double ballsInView_ = 0, ballsLeft_ = 0, layers_ = 0, cellLayers_ = 0, instancesDrawn_ = 0, repairs_ = 0;
 };
 
 }  // namespace
@@ -197,8 +189,7 @@ void Bezier::prepare(const MetaballField& field) {
 
   fieldUniforms_ = gl::Buffer::updatable(sizeof(FieldBlock));
   bezierUniforms_ = gl::Buffer::updatable(sizeof(BezierBlock));
-  statistics_.reserve(sizeof(Sums) * kSumCount);
-  statistics_.zero();
+  statistics_.prepare();
 }
 
 void Bezier::addPasses(FrameGraph& graph, ShaderLibrary& shaders, const SurfaceTarget& target) {
@@ -247,8 +238,8 @@ void Bezier::draw(const PassContext& context, ShaderLibrary& shaders, const View
 
   for (const ScreenRect& rect : splitRect(frame.screen, mostPixels(list_)))
     drawRegion(frame, rect, list_, false);
-  ballsInView_ += static_cast<double>(frame.projected.balls.size());
-  ballsLeft_ += static_cast<double>(std::count(frame.left.begin(), frame.left.end(), true));
+  statistics_.ballsInView += static_cast<double>(frame.projected.balls.size());
+  statistics_.ballsLeft += static_cast<double>(std::count(frame.left.begin(), frame.left.end(), true));
   context.bindTarget();
 }
 
@@ -317,7 +308,7 @@ void Bezier::drawRegion(Frame& frame, const ScreenRect& rect, int list, bool aga
   control_.read(&control, sizeof control);
   if (control.overflow == 0) return;
   MENISCUS_CHECK(list < static_cast<int>(frame.projected.balls.size()));
-  ++repairs_;
+  ++statistics_.repairs;
   const int longer = std::min(list * kListGrowth, static_cast<int>(frame.projected.balls.size()));
   const auto at = [&](int i) { return static_cast<int>(control.box[i]); };
   const ScreenRect spilled{rect.x + at(0), rect.y + at(1), at(2) - at(0) + 1, at(3) - at(1) + 1};
@@ -420,8 +411,8 @@ void Bezier::peel(Frame& frame, Region& region) {
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
     control_.read(states.data(), states.size() * sizeof(CellState), sizeof(Control));
     blocks_.read(blocks.data(), blocks.size() * 4);
-    ++layers_;
-    cellLayers_ += static_cast<double>(region.active.size());
+    ++statistics_.layers;
+    statistics_.cellLayers += static_cast<double>(region.active.size());
     moveWindows(frame, region, states, static_cast<std::uint32_t>(layer));
   }
 }
@@ -482,7 +473,7 @@ void Bezier::peelLayer(Frame& frame, const Region& region) {
   for (const std::size_t i : region.active) {
     const PeelWindow& window = region.windows[i];
     cells.push_back({window.reach, region.cells[i].first + window.from, window.to - window.from});
-    instancesDrawn_ += cells.back().count;
+    statistics_.instancesDrawn += cells.back().count;
   }
   drawCells(region, cells);
   glDisable(GL_DEPTH_TEST);
@@ -525,45 +516,6 @@ void Bezier::shade(Frame& frame, const Region& region) {
     glDrawArrays(GL_TRIANGLES, 0, 3);
   }
   glDisable(GL_DEPTH_TEST);
-}
-
-SurfaceStats Bezier::takeStats() {
-  SurfaceStats stats;
-  stats.method = "bezier";
-  std::array<Sums, kSumCount> sums{};
-  if (statistics_.bytes() > 0) {
-    glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-    statistics_.read(sums.data(), sizeof sums);
-    statistics_.zero();
-  }
-  double events = 0, solved = 0, hits = 0, mostInPiece = 0, longest = 0;
-  for (const Sums& s : sums) {
-    stats.pixels += s.pixels;
-    stats.pieces += s.pieces;
-    stats.iterations += s.iterations;
-    stats.mostIterations = std::max<std::uint64_t>(stats.mostIterations, s.mostIterations);
-    stats.overflow += s.overflow;
-    stats.grazing += s.grazing;
-    stats.notConverged += s.unfinished;
-    events += s.events;
-    solved += s.solved;
-    hits += s.hits;
-    mostInPiece = std::max<double>(mostInPiece, s.mostInPiece);
-    longest = std::max<double>(longest, s.longest);
-  }
-  stats.details = {{"hits", hits},
-                   {"events peeled", events},
-                   {"pieces that took iterations", solved},
-                   {"most iterations of one piece", mostInPiece},
-                   {"longest list", longest},
-                   {"balls in view", ballsInView_},
-                   {"balls left after culling", ballsLeft_},
-                   {"layers", layers_},
-                   {"layers of tiles", cellLayers_},
-                   {"rectangles drawn in layers", instancesDrawn_},
-                   {"repairs", repairs_}};
-  ballsInView_ = ballsLeft_ = layers_ = cellLayers_ = instancesDrawn_ = repairs_ = 0;
-  return stats;
 }
 
 std::vector<ResourceStats> Bezier::buffers() const {
