@@ -1,0 +1,3 @@
+meniscus_test(NAME generated_scenes_test LABEL unit
+  SOURCES generated_scenes_test.cpp ${PROJECT_SOURCE_DIR}/tests/support/scenes.cpp
+  LIBRARIES meniscus_core)
