@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/light_view.h"
 #include "core/sampling.h"
+#include "core/valid_primitives.h"
 #include "render/gbuffer.h"
 #include "render/layers.h"
 #include "render/post/depth_unsharp.h"
@@ -226,6 +227,7 @@ Renderer::Renderer(const RendererOptions& options) : impl_(std::make_unique<Impl
 Renderer::~Renderer() = default;
 
 void Renderer::setPrimitives(std::shared_ptr<const Primitives> primitives) {
+  requireFinite(*primitives);
   impl_->primitives = std::move(primitives);
   impl_->surfaces.takeStats(impl_->stats.surfaces);
   impl_->surfaces.clear();
@@ -461,6 +463,12 @@ HitImage Renderer::renderHits(const View& view, HitChannels channels, const Surf
                                 : f32::decodeNormal(glm::vec2(encoded[i], encoded[i + 1]) / 65535.0f));
   }
   return image;
+}
+
+void Renderer::forgetStats() {
+  impl_->stats = {};
+  std::vector<SurfaceStats> forgotten;
+  impl_->surfaces.takeStats(forgotten);
 }
 
 RenderStats Renderer::stats() const {

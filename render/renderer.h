@@ -32,7 +32,8 @@ class Renderer {
   explicit Renderer(const RendererOptions& options = {});
   ~Renderer();
 
-  /// What to draw from now on. Uploads only when a frame needs it.
+  /// What to draw from now on. Uploads only when a frame needs it. Throws InputError if a number is not
+  /// finite.
   void setPrimitives(std::shared_ptr<const Primitives> primitives);
 
   /// Draws a picture of view.size and hands its rows to `sink` from the top. What `layout` leaves out is not
@@ -46,6 +47,8 @@ class Renderer {
                       QuadricMethod quadrics = QuadricMethod::automatic);
 
   RenderStats stats() const;
+  /// Counts and times start anew.
+  void forgetStats();
 
  private:
   struct Impl;

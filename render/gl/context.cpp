@@ -73,6 +73,7 @@ std::unique_ptr<Context> Context::create(Backend backend) {
       gl::describeCurrent(report);
       context->name_ = report.name;
       context->renderer_ = report.renderer;
+      context->version_ = report.glVersion;
       return context;
     }
     failures += (failures.empty() ? "" : "; ") + report.name + ": " + report.reason;

@@ -33,9 +33,10 @@ class Context {
   static std::unique_ptr<Context> create(Backend backend);
   const std::string& name() const { return name_; }              ///< as BackendReport::name
   const std::string& rendererName() const { return renderer_; }  ///< GL_RENDERER
+  const std::string& driverVersion() const { return version_; }  ///< GL_VERSION
 
  protected:
-  std::string name_, renderer_;
+  std::string name_, renderer_, version_;
 };
 
 /// Tries every way without a window, one after the other, leaving no context current.

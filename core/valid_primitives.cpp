@@ -1,0 +1,35 @@
+#include "core/valid_primitives.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/error.h"
+
+namespace meniscus {
+
+namespace {
+
+// Not finite times zero is not a number, and stays that in a sum.
+float zeroIfFinite(const glm::vec3& v) {
+  return v.x * 0.0f + v.y * 0.0f + v.z * 0.0f;
+}
+
+void require(float zero, const char* kind, std::uint32_t id) {
+  if (zero != 0.0f)
+    throw InputError(fmt::format("the {} of atom {} has a number that is not finite", kind, id));
+}
+
+}  // namespace
+
+void requireFinite(const Primitives& primitives) {
+  for (const SpherePrimitive& s : primitives.spheres)
+    require(zeroIfFinite(s.center) + s.radius * 0.0f, "sphere", s.id);
+  for (const CylinderPrimitive& c : primitives.cylinders)
+    require(zeroIfFinite(c.a) + zeroIfFinite(c.b) + c.radius * 0.0f, "bond", c.idA);
+  for (const EllipsoidPrimitive& e : primitives.ellipsoids)
+    require(zeroIfFinite(e.center) + zeroIfFinite(e.axisA) + zeroIfFinite(e.axisB) + e.shortest * 0.0f,
+            "ellipsoid", e.id);
+}
+
+}  // namespace meniscus
