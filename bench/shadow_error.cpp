@@ -18,7 +18,7 @@
 #include "bench/bench_scenes.h"
 #include "render/gl/context.h"
 #include "render/renderer.h"
-#include "tests/support/shadow_scene.h"
+#include "render/shadow_scene.h"
 
 namespace meniscus::bench {
 namespace {
@@ -85,7 +85,7 @@ double samplesTaken(const std::vector<float>& values, const std::vector<bool>& c
 void measureShadows(const Source& source, int repetitions) {
   const BenchScene scene = loadScene(source.scene, kSize);
   const Lighting lighting;
-  test::ShadowScene shadows(*scene.primitives, scene.view, lighting.key);
+  ShadowScene shadows(*scene.primitives, scene.view, lighting.key);
 
   constexpr int kPatterns = 16;  // of 256 samples
   std::vector<float> truth(shadows.depth().size(), 0.0f);

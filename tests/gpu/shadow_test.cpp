@@ -9,17 +9,16 @@
 #include <limits>
 
 #include "render/renderer.h"
+#include "render/shadow_scene.h"
 #include "tests/support/exact_rays.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/random.h"
 #include "tests/support/scenes.h"
-#include "tests/support/shadow_scene.h"
 
 namespace meniscus {
 namespace {
 
 using test::Real;
-using test::ShadowScene;
 using test::Vec3;
 
 class ShadowTest : public test::GlTest {};

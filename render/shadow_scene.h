@@ -1,5 +1,6 @@
 #pragma once
-// A scene's G-buffer and shadow map, drawn once, to be looked at through shadow passes of many settings.
+// A scene's G-buffer and shadow map, drawn once, to be looked at through shadow passes of many settings: for
+// measuring and for tests. Quadrics only.
 
 #include <memory>
 #include <vector>
@@ -13,7 +14,7 @@
 #include "render/shader_library.h"
 #include "render/view_block.h"
 
-namespace meniscus::test {
+namespace meniscus {
 
 class ShadowScene {
  public:
@@ -51,4 +52,4 @@ class ShadowScene {
   double passMs_ = 0;
 };
 
-}  // namespace meniscus::test
+}  // namespace meniscus

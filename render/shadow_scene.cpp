@@ -1,4 +1,4 @@
-#include "tests/support/shadow_scene.h"
+#include "render/shadow_scene.h"
 
 #include <glad/gl.h>
 
@@ -8,7 +8,7 @@
 #include "core/light_view.h"
 #include "core/shared_math.h"
 
-namespace meniscus::test {
+namespace meniscus {
 
 ShadowScene::ShadowScene(const Primitives& primitives, const View& view, const DirectionalLight& key,
                          double penumbra)
@@ -83,4 +83,4 @@ std::vector<float> ShadowScene::visibility(const ShadowSettings& settings, int s
   return out;
 }
 
-}  // namespace meniscus::test
+}  // namespace meniscus
