@@ -10,6 +10,7 @@ namespace meniscus {
 int runRender(const std::vector<std::string>& arguments);
 int runInfo(const std::vector<std::string>& arguments);
 int runDoctor(const std::vector<std::string>& arguments);
+int runMeasure(const std::vector<std::string>& arguments);
 
 /// "0.1.0"
 const char* version();

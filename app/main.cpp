@@ -24,6 +24,7 @@ constexpr const char* kHelp =
     "Commands:\n"
     "  render FILE... -o OUT.png   Draw structure files as pictures\n"
     "  info FILE                   Say what a structure file holds\n"
+    "  measure SWEEP -o DIR        Measure error against run time, and write a report\n"
     "  doctor                      Say which ways to OpenGL work here, and what to do about the others\n"
     "  help [COMMAND]              Show this, or the options of a command (also COMMAND --help)\n"
     "\n"
@@ -40,7 +41,7 @@ constexpr const char* kHelp =
 
 int runCommand(std::vector<std::string> arguments) {
   if (arguments.empty())
-    throw UsageError("no command; there are render, info and doctor, see meniscus --help");
+    throw UsageError("no command; there are render, info, measure and doctor, see meniscus --help");
   std::string command = arguments.front();
   arguments.erase(arguments.begin());
   if (command == "help" && !arguments.empty()) {
@@ -49,6 +50,7 @@ int runCommand(std::vector<std::string> arguments) {
   }
   if (command == "render") return runRender(arguments);
   if (command == "info") return runInfo(arguments);
+  if (command == "measure") return runMeasure(arguments);
   if (command == "doctor") return runDoctor(arguments);
   if (command == "help" || command == "--help" || command == "-h") {
     std::fputs(kHelp, stdout);
@@ -59,7 +61,7 @@ int runCommand(std::vector<std::string> arguments) {
     return 0;
   }
   throw UsageError("there is no command '" + command +
-                   "'; there are render, info and doctor, see meniscus --help");
+                   "'; there are render, info, measure and doctor, see meniscus --help");
 }
 
 extern "C" void endBySignal(int signal) {

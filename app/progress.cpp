@@ -1,5 +1,6 @@
 #include "app/progress.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -10,13 +11,26 @@ namespace {
 
 constexpr std::chrono::milliseconds kFirst{400}, kInterval{100};
 
+// "1 h 05 min", "3 min 20 s", "12 s".
+std::string duration(double seconds) {
+  const auto s = static_cast<long>(seconds + 0.5);
+  if (s >= 3600) return fmt::format("{} h {:02} min", s / 3600, s % 3600 / 60);
+  if (s >= 60) return fmt::format("{} min {:02} s", s / 60, s % 60);
+  return fmt::format("{} s", s);
+}
+
 }  // namespace
 
-Progress::Progress(bool wanted) : wanted_(wanted && isatty(STDERR_FILENO) == 1), next_(Clock::now()) {}
+Progress::Progress(bool wanted, bool timeLeft)
+    : wanted_(wanted && isatty(STDERR_FILENO) == 1),
+      timeLeft_(timeLeft),
+      next_(Clock::now()),
+      started_(Clock::now()) {}
 
 void Progress::start(std::string label) {
   label_ = std::move(label);
-  next_ = Clock::now() + kFirst;
+  started_ = Clock::now();
+  next_ = started_ + kFirst;
 }
 
 void Progress::update(double share) {
@@ -24,6 +38,9 @@ void Progress::update(double share) {
   next_ = Clock::now() + kInterval;
   shown_ = true;
   std::fprintf(stderr, "\r\033[K%s %3.0f %%", label_.c_str(), share * 100);
+  if (const double spent = std::chrono::duration<double>(Clock::now() - started_).count();
+      timeLeft_ && share > 0)
+    std::fprintf(stderr, ", %s left", duration(spent * (1 - share) / share).c_str());
   std::fflush(stderr);
 }
 

@@ -15,10 +15,10 @@
 #include <cstring>
 #include <exception>
 
+#include "app/measure/shadow_run.h"
 #include "bench/bench_scenes.h"
 #include "render/gl/context.h"
 #include "render/renderer.h"
-#include "render/shadow_scene.h"
 
 namespace meniscus::bench {
 namespace {
@@ -38,98 +38,17 @@ const Source kSources[] = {
     {"ACE2 x 8, space-filling", {"7ddo.pdb.gz", Representation::spacefill, {2, 2, 2}}},
 };
 
-struct Setting {
-  const char* name;
-  int samples, probes;
-};
-const Setting kSettings[] = {{"1", 1, 0},   {"4", 4, 0},        {"8", 8, 0},          {"16", 16, 0},
-                             {"64", 64, 0}, {"8 to 64", 64, 8}, {"16 to 64", 64, 16}, {"256", 256, 0}};
-
-struct Error {
-  double rms = 0, largest = 0;
-};
-
-Error compare(const std::vector<float>& values, const std::vector<float>& truth,
-              const std::vector<bool>& counts) {
-  Error error;
-  double sum = 0;
-  std::size_t n = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!counts[i]) continue;
-    const double d = static_cast<double>(values[i]) - static_cast<double>(truth[i]);
-    sum += d * d;
-    error.largest = std::max(error.largest, std::abs(d));
-    ++n;
-  }
-  error.rms = std::sqrt(sum / static_cast<double>(std::max<std::size_t>(n, 1)));
-  return error;
-}
-
-ShadowSettings shadowsOf(const Source& source, const Setting& setting) {
-  return {ShadowMode::soft, source.penumbra, setting.samples, setting.probes};
-}
-
-// Samples that a pixel facing the light takes, on average.
-double samplesTaken(const std::vector<float>& values, const std::vector<bool>& counts,
-                    const Setting& setting) {
-  double sum = 0, n = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!counts[i]) continue;
-    const bool agreed = setting.probes > 0 && (values[i] == 0.0f || values[i] == 1.0f);
-    sum += agreed ? setting.probes : setting.samples;
-    n += 1;
-  }
-  return sum / std::max(n, 1.0);
-}
-
 void measureShadows(const Source& source, int repetitions) {
   const BenchScene scene = loadScene(source.scene, kSize);
-  const Lighting lighting;
-  ShadowScene shadows(*scene.primitives, scene.view, lighting.key);
-
-  constexpr int kPatterns = 16;  // of 256 samples
-  std::vector<float> truth(shadows.depth().size(), 0.0f);
-  for (int k = 0; k < kPatterns; ++k) {
-    const std::vector<float> part = shadows.visibility(shadowsOf(source, {"", 256, 0}), k, kPatterns);
-    for (std::size_t i = 0; i < truth.size(); ++i) truth[i] += part[i] / static_cast<float>(kPatterns);
-  }
-  const glm::dvec3 toLight = -lighting.key.direction;
-  std::vector<bool> facing(truth.size());
-  std::size_t lit = 0, penumbra = 0;
-  for (std::size_t i = 0; i < truth.size(); ++i) {
-    facing[i] = shadows.depth()[i] > 0 && glm::dot(glm::dvec3(shadows.normal()[i]), toLight) > 0;
-    lit += facing[i];
-    penumbra += facing[i] && truth[i] > 0 && truth[i] < 1;
-  }
-
-  constexpr std::size_t kCount = std::size(kSettings);
-  std::vector<double> passMs[kCount], frameMs[kCount];
-  Error errors[kCount];
-  double taken[kCount] = {};
-  Renderer renderer;
-  renderer.setPrimitives(scene.primitives);
-  for (int repetition = -1; repetition < repetitions; ++repetition) {  // the first warms up
-    for (std::size_t s = 0; s < kCount; ++s) {
-      const std::vector<float> values = shadows.visibility(shadowsOf(source, kSettings[s]));
-      errors[s] = compare(values, truth, facing);
-      taken[s] = samplesTaken(values, facing, kSettings[s]);
-      RenderSettings settings;
-      settings.samples = 1;
-      settings.shadows = shadowsOf(source, kSettings[s]);
-      NullSink sink;
-      const double ms = processorMs([&] {
-        renderer.renderPicture(scene.view, lighting, Background{}, settings, PixelFormat::rgba8, sink);
-      });
-      if (repetition < 0) continue;
-      passMs[s].push_back(shadows.passMs());
-      frameMs[s].push_back(ms);
-    }
-  }
-  for (std::size_t s = 0; s < kCount; ++s) {
+  const std::vector<std::pair<int, int>> settings = {{1, 0},  {4, 0},  {8, 0},   {16, 0},
+                                                     {64, 0}, {64, 8}, {64, 16}, {256, 0}};
+  for (const measure::ShadowPoint& p : measure::measureShadowPoints(
+           scene.primitives, scene.view, source.penumbra, settings, repetitions, {})) {
+    const std::string name =
+        p.probes > 0 ? fmt::format("{} to {}", p.probes, p.samples) : fmt::format("{}", p.samples);
     fmt::print("shadow,\"{}\",{},{},{},{:.5f},{:.4f},{:.2f},{:.2f},{:.1f},{:.3f}\n", source.name,
-               source.penumbra, kSettings[s].name, kSettings[s].samples, errors[s].rms, errors[s].largest,
-               median(passMs[s]), median(frameMs[s]), taken[s],
-               static_cast<double>(penumbra) / static_cast<double>(lit));
+               source.penumbra, name, p.samples, p.rms, p.largest, p.passMs, p.frameMs, p.samplesTaken,
+               p.penumbraShare);
     std::fflush(stdout);
   }
 }
@@ -160,12 +79,12 @@ void measureSupersampling(const Source& source, int repetitions) {
   const std::vector<bool> all(truth.size(), true);
   const int counts[] = {1, 4, 16};
   std::vector<double> ms[std::size(counts)];
-  Error errors[std::size(counts)];
+  measure::ShareError errors[std::size(counts)];
   for (int repetition = -1; repetition < repetitions; ++repetition) {
     for (std::size_t s = 0; s < std::size(counts); ++s) {
       std::vector<float> picture;
       const double spent = processorMs([&] { picture = draw(counts[s]); });
-      errors[s] = compare(picture, truth, all);
+      errors[s] = measure::compareShares(picture, truth, all);
       if (repetition >= 0) ms[s].push_back(spent);
     }
   }
