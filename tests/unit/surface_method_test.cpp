@@ -42,10 +42,10 @@ TEST(SurfaceMethods, haveNamesAndDefaultsWithinTheirRanges) {
         EXPECT_NE(refusalOf({settings.method, {{std::string(parameter.name), beyond}}})
                       .find(std::string(parameter.name)),
                   std::string::npos);
-      if (parameter.whole && parameter.most > parameter.least)
-        EXPECT_NE(refusalOf({settings.method, {{std::string(parameter.name), parameter.least + 0.5}}})
-                      .find("whole number"),
-                  std::string::npos);
+      if (!parameter.whole || parameter.most <= parameter.least) continue;
+      EXPECT_NE(refusalOf({settings.method, {{std::string(parameter.name), parameter.least + 0.5}}})
+                    .find("whole number"),
+                std::string::npos);
     }
   }
   EXPECT_EQ(refusalOf({}), "taken") << "auto";
