@@ -20,7 +20,7 @@ class BadCommand : public CliTest {
 
 TEST_F(BadCommand, isNamedWithTheCommandsThereAre) {
   refused({}, {"render", "info", "doctor", "--help"});
-  refused({"rendr"}, {"'rendr'", "render, info and doctor"});
+  refused({"rendr"}, {"'rendr'", "render, info, measure and doctor"});
   refused({"--frobnicate"}, {"--frobnicate"});
 }
 
