@@ -11,6 +11,7 @@ namespace meniscus::tiles {
 
 void FieldTiles::setField(const MetaballField* field) {
   field_ = field;
+  clusters_ = clustersOf(*field);
   valid_ = wholeValid_ = false;
 }
 
@@ -53,7 +54,7 @@ Tiles castBlock(const MetaballSource& source, const MetaballField& field, const 
 void FieldTiles::cast(const TileTarget& target, const PlaneChannels& channels, Planes& planes) {
   const MetaballSource source(*field_, target);
   if (!valid_ || !sameLists(listed_, target)) {
-    lists_.build(source, target);
+    lists_.build(source, clusters_, target);
     listed_ = target;
     valid_ = true;
     wholeValid_ = false;
@@ -68,7 +69,7 @@ void FieldTiles::cast(const TileTarget& target, const PlaneChannels& channels, P
                                                    Tiles().set(), channels, planes, counts.local());
   });
   if (std::any_of(again.begin(), again.end(), [](const Tiles& tiles) { return tiles.any(); })) {
-    if (!wholeValid_) whole_.build(source, target, false);
+    if (!wholeValid_) whole_.build(source, clusters_, target, false);
     wholeValid_ = true;
     tbb::parallel_for(0, blocks, [&](int b) {
       const Tiles& tiles = again[static_cast<std::size_t>(b)];

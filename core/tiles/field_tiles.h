@@ -20,6 +20,7 @@ class FieldTiles {
 
  private:
   const MetaballField* field_ = nullptr;
+  Clusters clusters_;
   TileLists lists_;
   TileLists whole_;  // not cut: for tiles in which a ray begins inside the surface
   TileTarget listed_;

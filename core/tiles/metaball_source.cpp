@@ -14,12 +14,19 @@ MetaballSource::MetaballSource(const MetaballField& field, const TileTarget& tar
   lastShare_ = coreShare(field.kernel, field.level, static_cast<double>(lastCoefficient_));
 }
 
-void MetaballSource::place(std::size_t first, std::size_t last, Placement* out) const {
-  for (std::size_t i = first; i < last; ++i) {
-    const Metaball& ball = field_.balls[i];
-    *out++ = ball.coefficient != 0 ? projection_.placeSphere(ball.center, static_cast<double>(ball.support))
-                                   : Placement{};
-  }
+Placement MetaballSource::place(std::size_t index) const {
+  const Metaball& ball = field_.balls[index];
+  if (ball.coefficient == 0) return {};
+  return projection_.placeSphere(ball.center, static_cast<double>(ball.support));
+}
+
+Clusters clustersOf(const MetaballField& field) {
+  Clusters clusters;
+  clusters.build(field.balls.size(), [&](std::size_t index) -> Clusters::Ball {
+    const Metaball& ball = field.balls[index];
+    return {ball.center, ball.coefficient != 0 ? ball.support : -1};
+  });
+  return clusters;
 }
 
 Occluder MetaballSource::occluder(std::size_t index) const {

@@ -25,13 +25,20 @@ struct BallRecord {
   std::uint32_t id;
 };
 
+/// Groups of neighbouring balls.
+Clusters clustersOf(const MetaballField& field);
+
 class MetaballSource : public TileSource {
  public:
   /// The field must outlive it.
   MetaballSource(const MetaballField& field, const TileTarget& target);
 
   std::size_t size() const override { return field_.balls.size(); }
-  void place(std::size_t first, std::size_t last, Placement* out) const override;
+  Placement place(std::size_t index) const override;
+  bool isBall(std::size_t) const override { return true; }
+  Placement placeBall(const glm::vec3& center, float radius) const override {
+    return projection_.placeSphere(center, static_cast<double>(radius));
+  }
   /// Discs of the cores in which one ball alone reaches the level, if no ball takes anything away. They hide
   /// what lies behind from rays that begin outside of the surface.
   Occluder occluder(std::size_t index) const override;

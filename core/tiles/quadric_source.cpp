@@ -28,21 +28,36 @@ std::size_t QuadricSource::size() const {
   return primitives_.spheres.size() + primitives_.cylinders.size() + primitives_.ellipsoids.size();
 }
 
-void QuadricSource::place(std::size_t first, std::size_t last, Placement* out) const {
+Placement QuadricSource::place(std::size_t index) const {
   const std::size_t spheres = primitives_.spheres.size(), rods = primitives_.cylinders.size();
-  std::size_t i = first;
-  for (; i < std::min(last, spheres); ++i) {
-    const SpherePrimitive& s = primitives_.spheres[i];
-    *out++ = projection_.placeSphere(s.center, static_cast<double>(s.radius));
+  if (index < spheres) {
+    const SpherePrimitive& s = primitives_.spheres[index];
+    return projection_.placeSphere(s.center, static_cast<double>(s.radius));
   }
-  for (; i < std::min(last, spheres + rods); ++i) {
-    const CylinderPrimitive& c = primitives_.cylinders[i - spheres];
-    *out++ = projection_.placeCylinder(c.a, c.b, static_cast<double>(c.radius));
+  if (index < spheres + rods) {
+    const CylinderPrimitive& c = primitives_.cylinders[index - spheres];
+    return projection_.placeCylinder(c.a, c.b, static_cast<double>(c.radius));
   }
-  for (; i < last; ++i) {
-    const EllipsoidPrimitive& e = primitives_.ellipsoids[i - spheres - rods];
-    *out++ = projection_.placeEllipsoid(e.center, {e.axisA, e.axisB, thirdAxis(e)});
-  }
+  const EllipsoidPrimitive& e = primitives_.ellipsoids[index - spheres - rods];
+  return projection_.placeEllipsoid(e.center, {e.axisA, e.axisB, thirdAxis(e)});
+}
+
+Clusters clustersOf(const Primitives& primitives) {
+  const std::size_t spheres = primitives.spheres.size(), rods = primitives.cylinders.size();
+  Clusters clusters;
+  clusters.build(spheres + rods + primitives.ellipsoids.size(), [&](std::size_t index) -> Clusters::Ball {
+    if (index < spheres) {
+      const SpherePrimitive& s = primitives.spheres[index];
+      return {s.center, s.radius > 0 ? s.radius : -1};
+    }
+    if (index < spheres + rods) {
+      const CylinderPrimitive& c = primitives.cylinders[index - spheres];
+      return {0.5f * (c.a + c.b), 0.5f * glm::length(c.b - c.a) + c.radius};
+    }
+    const EllipsoidPrimitive& e = primitives.ellipsoids[index - spheres - rods];
+    return {e.center, std::max({glm::length(e.axisA), glm::length(e.axisB), e.shortest})};
+  });
+  return clusters;
 }
 
 Occluder QuadricSource::occluder(std::size_t index) const {

@@ -29,6 +29,9 @@ struct QuadricRecord {
   float radii[3];
 };
 
+/// Groups of neighbouring quadrics, in the order of QuadricSource.
+Clusters clustersOf(const Primitives& primitives);
+
 class QuadricSource : public TileSource {
  public:
   /// Both must outlive it.
@@ -36,7 +39,11 @@ class QuadricSource : public TileSource {
       : primitives_(primitives), projection_(target) {}
 
   std::size_t size() const override;
-  void place(std::size_t first, std::size_t last, Placement* out) const override;
+  Placement place(std::size_t index) const override;
+  bool isBall(std::size_t index) const override { return index < primitives_.spheres.size(); }
+  Placement placeBall(const glm::vec3& center, float radius) const override {
+    return projection_.placeSphere(center, static_cast<double>(radius));
+  }
   Occluder occluder(std::size_t index) const override;
   void record(std::size_t index, QuadricRecord& out) const;
 

@@ -9,13 +9,14 @@ namespace meniscus::tiles {
 
 void QuadricTiles::setPrimitives(const Primitives* primitives) {
   primitives_ = primitives;
+  clusters_ = clustersOf(*primitives);
   valid_ = false;
 }
 
 void QuadricTiles::cast(const TileTarget& target, const PlaneChannels& channels, Planes& planes) {
   const QuadricSource source(*primitives_, target);
   if (!valid_ || !sameLists(listed_, target)) {
-    lists_.build(source, target);
+    lists_.build(source, clusters_, target);
     listed_ = target;
     valid_ = true;
     ++builds_;

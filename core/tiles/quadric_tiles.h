@@ -19,6 +19,7 @@ class QuadricTiles {
 
  private:
   const Primitives* primitives_ = nullptr;
+  Clusters clusters_;
   TileLists lists_;
   TileTarget listed_;
   bool valid_ = false;

@@ -1,8 +1,10 @@
 #include "core/tiles/tile_lists.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 
@@ -12,6 +14,8 @@ namespace {
 
 constexpr std::size_t kLeastChunk = 4096;  // primitives that one task sorts or distributes
 constexpr std::size_t kMostChunks = 64;
+constexpr float kLeastDisc = 0.70f;  // half the diagonal of a cell [pixels]
+constexpr std::size_t kSlabs = 16, kFewestClusters = 128;
 constexpr std::uint64_t kAllCells = ~std::uint64_t{0};
 
 struct Chunks {
@@ -70,29 +74,25 @@ std::uint32_t TileLists::bucketOf(float front) const {
   return static_cast<std::uint32_t>(std::clamp(bucket, 0.0f, static_cast<float>(buckets_ - 1)));
 }
 
-// Placements of what can be seen at all, in order of their buckets; within a bucket as they came.
-void TileLists::sortByDepth(const TileSource& source) {
-  const std::size_t count = source.size(), chunks = chunksOf(count).count;
-  unsorted_.resize(count);
-  std::vector<std::size_t> bins(chunks * buckets_, 0);
-  std::vector<std::uint32_t> visible(chunks, 0);
+// Into sorted_, in order of their buckets; within a bucket as they came.
+void TileLists::sortByDepth(std::vector<Placed>& items) {
+  const std::size_t count = items.size(), chunks = chunksOf(count).count;
+  float nearest = -std::numeric_limits<float>::infinity(), farthest = std::numeric_limits<float>::infinity();
+  for (const Placed& p : items) {
+    nearest = std::max(nearest, p.place.front);
+    farthest = std::min(farthest, p.place.front);
+  }
+  const std::uint32_t firstBucket = bucketOf(nearest);
+  const std::size_t used = count > 0 ? bucketOf(farthest) - firstBucket + 1 : 0;
+  std::vector<std::size_t> bins(chunks * used, 0);
+  const auto binOf = [&](const Placed& p) { return bucketOf(p.place.front) - firstBucket; };
   forChunks(count, [&](std::size_t c, std::size_t first, std::size_t last) {
-    std::vector<Placement> placements(last - first);
-    source.place(first, last, placements.data());
-    std::size_t next = first;
-    for (std::size_t i = first; i < last; ++i) {
-      const Placement& p = placements[i - first];
-      if (!(p.front > -std::numeric_limits<float>::infinity())) continue;
-      unsorted_[next++] = {p, static_cast<std::uint32_t>(i)};
-      ++bins[c * buckets_ + bucketOf(p.front)];
-    }
-    visible[c] = static_cast<std::uint32_t>(next - first);
+    for (std::size_t i = first; i < last; ++i) ++bins[c * used + binOf(items[i])];
   });
-  sorted_.resize(placeBins(bins, chunks, buckets_));
-  forChunks(count, [&](std::size_t c, std::size_t first, std::size_t) {
-    for (std::size_t i = first; i < first + visible[c]; ++i) {
-      sorted_[bins[c * buckets_ + bucketOf(unsorted_[i].place.front)]++] = unsorted_[i];
-    }
+  placeBins(bins, chunks, used);
+  sorted_.resize(count);
+  forChunks(count, [&](std::size_t c, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) sorted_[bins[c * used + binOf(items[i])]++] = items[i];
   });
 }
 
@@ -123,32 +123,32 @@ void TileLists::distribute() {
   });
 }
 
+void TileLists::startBlock(int index) {
+  Filling& f = filling_[static_cast<std::size_t>(index)];
+  f.covered.fill(0);
+  f.behind.fill(-std::numeric_limits<float>::infinity());
+  f.farthest.fill(std::numeric_limits<float>::infinity());
+  f.counts.fill(0);
+  f.tiles.clear();
+  f.members.clear();
+  f.open = std::min(kBlockTiles, grid_.columns - index % grid_.blockColumns * kBlockTiles) *
+           std::min(kBlockTiles, grid_.rows - index / grid_.blockColumns * kBlockTiles);
+  f.allBehind = std::numeric_limits<float>::infinity();
+  blocks_[static_cast<std::size_t>(index)].members.clear();
+}
+
 void TileLists::fillBlock(int index, const TileSource& source, bool cut) {
   TileBlock& block = blocks_[static_cast<std::size_t>(index)];
-  block.members.clear();
+  Filling& f = filling_[static_cast<std::size_t>(index)];
   const int blockX = index % grid_.blockColumns * kBlockTiles,
             blockY = index / grid_.blockColumns * kBlockTiles;
-  struct Entry {
-    std::uint32_t tile, member;
-  };
-  thread_local std::vector<Entry> entries;
-  entries.clear();
-  std::array<std::uint64_t, kTilesPerBlock> covered{};
-  std::array<float, kTilesPerBlock> behind;    // nothing below is seen
-  std::array<float, kTilesPerBlock> farthest;  // of the discs that cover cells
-  behind.fill(-std::numeric_limits<float>::infinity());
-  farthest.fill(std::numeric_limits<float>::infinity());
-  std::array<std::uint32_t, kTilesPerBlock> counts{};
   const int tilesX = std::min(kBlockTiles, grid_.columns - blockX),
             tilesY = std::min(kBlockTiles, grid_.rows - blockY);
-  int open = tilesX * tilesY;
-  float allBehind = std::numeric_limits<float>::infinity();
-
   const std::size_t first = blockFirst_[static_cast<std::size_t>(index)],
                     last = blockFirst_[static_cast<std::size_t>(index) + 1];
   for (std::size_t k = first; k < last; ++k) {
     const Placed& p = sorted_[blockEntries_[k]];
-    if (open == 0 && p.place.front + slack() <= allBehind) break;
+    if (f.open == 0 && p.place.front + slack() <= f.allBehind) break;
     const int x0 = std::max(p.place.x0 - blockX, 0), x1 = std::min(p.place.x1 - blockX, tilesX - 1);
     const int y0 = std::max(p.place.y0 - blockY, 0), y1 = std::min(p.place.y1 - blockY, tilesY - 1);
     Occluder disc;
@@ -156,7 +156,7 @@ void TileLists::fillBlock(int index, const TileSource& source, bool cut) {
     for (int y = y0; y <= y1; ++y) {
       for (int x = x0; x <= x1; ++x) {
         const auto tile = static_cast<std::size_t>(y * kBlockTiles + x);
-        if (p.place.front <= behind[tile]) continue;
+        if (p.place.front <= f.behind[tile]) continue;
         if (!listed) {
           listed = true;
           block.members.push_back(p.index);
@@ -164,31 +164,124 @@ void TileLists::fillBlock(int index, const TileSource& source, bool cut) {
           disc.x -= grid_.x + blockX * kTileSize;
           disc.y -= grid_.y + blockY * kTileSize;
         }
-        entries.push_back(
-            {static_cast<std::uint32_t>(tile), static_cast<std::uint32_t>(block.members.size() - 1)});
-        ++counts[tile];
-        if (covered[tile] == kAllCells || !(disc.radius > 0.7f)) continue;
+        f.tiles.push_back(static_cast<std::uint32_t>(tile));
+        f.members.push_back(static_cast<std::uint32_t>(block.members.size() - 1));
+        ++f.counts[tile];
+        if (f.covered[tile] == kAllCells || !(disc.radius > kLeastDisc)) continue;
         const std::uint64_t cells = cellsInside(static_cast<float>(disc.x - x * kTileSize),
                                                 static_cast<float>(disc.y - y * kTileSize), disc.radius);
-        if ((cells & ~covered[tile]) == 0) continue;
-        covered[tile] |= cells;
-        farthest[tile] = std::min(farthest[tile], disc.z);
-        if (covered[tile] != kAllCells) continue;
-        behind[tile] = farthest[tile];
-        allBehind = std::min(allBehind, behind[tile]);
-        --open;
+        if ((cells & ~f.covered[tile]) == 0) continue;
+        f.covered[tile] |= cells;
+        f.farthest[tile] = std::min(f.farthest[tile], disc.z);
+        if (f.covered[tile] != kAllCells) continue;
+        f.behind[tile] = f.farthest[tile];
+        f.allBehind = std::min(f.allBehind, f.behind[tile]);
+        --f.open;
       }
     }
   }
-  block.first[0] = 0;
-  for (std::size_t t = 0; t < kTilesPerBlock; ++t) block.first[t + 1] = block.first[t] + counts[t];
-  block.entries.resize(entries.size());
-  std::array<std::uint32_t, kTilesPerBlock> next;
-  std::copy_n(block.first.begin(), kTilesPerBlock, next.begin());
-  for (const Entry& e : entries) block.entries[next[e.tile]++] = e.member;
 }
 
-void TileLists::build(const TileSource& source, const TileTarget& target, bool cut) {
+// Entries as they came, to entries tile by tile.
+void TileLists::finishBlock(int index) {
+  TileBlock& block = blocks_[static_cast<std::size_t>(index)];
+  const Filling& f = filling_[static_cast<std::size_t>(index)];
+  block.first[0] = 0;
+  for (std::size_t t = 0; t < kTilesPerBlock; ++t) block.first[t + 1] = block.first[t] + f.counts[t];
+  block.entries.resize(f.tiles.size());
+  std::array<std::uint32_t, kTilesPerBlock> next;
+  std::copy_n(block.first.begin(), kTilesPerBlock, next.begin());
+  for (std::size_t i = 0; i < f.tiles.size(); ++i) block.entries[next[f.tiles[i]]++] = f.members[i];
+}
+
+void TileLists::fillAll(const TileSource& source, bool cut) {
+  distribute();
+  tbb::parallel_for(0, grid_.blocks(), [&](int b) { fillBlock(b, source, cut); });
+}
+
+// Whether all that a placement touches is covered in front of it.
+bool TileLists::hidden(const Placement& p) const {
+  for (int y = p.y0 / kBlockTiles; y <= p.y1 / kBlockTiles; ++y) {
+    for (int x = p.x0 / kBlockTiles; x <= p.x1 / kBlockTiles; ++x) {
+      const Filling& f = filling_[static_cast<std::size_t>(y * grid_.blockColumns + x)];
+      if (f.open == 0 && p.front <= f.allBehind) continue;
+      const int x0 = std::max(p.x0 - x * kBlockTiles, 0),
+                x1 = std::min(p.x1 - x * kBlockTiles, kBlockTiles - 1);
+      const int y0 = std::max(p.y0 - y * kBlockTiles, 0),
+                y1 = std::min(p.y1 - y * kBlockTiles, kBlockTiles - 1);
+      for (int v = y0; v <= y1; ++v) {
+        for (int u = x0; u <= x1; ++u)
+          if (p.front > f.behind[static_cast<std::size_t>(v * kBlockTiles + u)]) return false;
+      }
+    }
+  }
+  return true;
+}
+
+void TileLists::fillWhole(const TileSource& source, bool cut) {
+  std::vector<Placed> placed(source.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, placed.size(), kLeastChunk), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i)
+      placed[i] = {source.place(i), static_cast<std::uint32_t>(i)};
+  });
+  placedCount_ = placed.size();
+  std::erase_if(placed, [](const Placed& p) { return !p.place.visible(); });
+  sortByDepth(placed);
+  fillAll(source, cut);
+}
+
+// Slabs end between buckets, so that the order of a list does not depend on them.
+void TileLists::fillBySlabs(const TileSource& source, const Clusters& clusters, bool cut) {
+  const std::span<const Cluster> all = clusters.list();
+  std::vector<Placed> placed(all.size());
+  tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t c) {
+    placed[c] = {source.placeBall(all[c].center, all[c].radius), static_cast<std::uint32_t>(c)};
+  });
+  std::erase_if(placed, [](const Placed& p) { return !p.place.visible(); });
+  sortByDepth(placed);
+  const std::vector<Placed> order = sorted_;
+  const std::size_t perSlab = std::max<std::size_t>(order.size() / kSlabs, kFewestClusters);
+  std::vector<Placed> waiting, active;  // primitives of opened clusters, behind this slab and in it
+  for (std::size_t next = 0; next < order.size();) {
+    std::size_t end = std::min(next + perSlab, order.size());
+    while (end < order.size() && bucketOf(order[end].place.front) == bucketOf(order[end - 1].place.front))
+      ++end;
+    const std::uint32_t limit = end < order.size() ? bucketOf(order[end].place.front) : buckets_;
+    // Each part keeps its order.
+    const std::size_t perPart = std::max<std::size_t>((end - next + kMostChunks - 1) / kMostChunks, 8);
+    std::vector<std::vector<Placed>> parts((end - next + perPart - 1) / perPart);
+    std::atomic<std::size_t> looked = 0;
+    tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
+      for (std::size_t k = next + part * perPart; k < std::min(end, next + (part + 1) * perPart); ++k) {
+        if (cut && hidden(order[k].place)) continue;
+        const Cluster& cluster = all[order[k].index];
+        looked += cluster.last - cluster.first;
+        for (std::uint32_t i = cluster.first; i < cluster.last; ++i) {
+          const Clusters::Ball& ball = clusters.balls()[i];
+          Placed p{source.placeBall(ball.center, ball.radius), clusters.order()[i]};
+          if (!p.place.visible() || (cut && hidden(p.place))) continue;
+          if (!source.isBall(p.index)) p.place = source.place(p.index);
+          if (p.place.visible()) parts[part].push_back(p);
+        }
+      }
+    });
+    placedCount_ += looked;
+    active.clear();
+    std::vector<Placed> still;
+    const auto take = [&](const std::vector<Placed>& from) {
+      for (const Placed& p : from) (bucketOf(p.place.front) < limit ? active : still).push_back(p);
+    };
+    take(waiting);
+    for (const std::vector<Placed>& part : parts) take(part);
+    waiting.swap(still);
+    sortByDepth(active);
+    fillAll(source, cut);
+    next = end;
+  }
+}
+
+void TileLists::build(const TileSource& source, const Clusters& clusters, const TileTarget& target,
+                      bool cut) {
   grid_ = TileGrid(target.area);
   nearZ_ = static_cast<float>(target.view.nearZ);
   // A few primitives to a bucket.
@@ -196,9 +289,15 @@ void TileLists::build(const TileSource& source, const TileTarget& target, bool c
   bucketDepth_ = std::max((nearZ_ - static_cast<float>(target.view.farZ)) / static_cast<float>(buckets_),
                           std::numeric_limits<float>::min());
   blocks_.resize(static_cast<std::size_t>(grid_.blocks()));
-  sortByDepth(source);
-  distribute();
-  tbb::parallel_for(0, grid_.blocks(), [&](int b) { fillBlock(b, source, cut); });
+  filling_.resize(blocks_.size());
+  placedCount_ = 0;
+  tbb::parallel_for(0, grid_.blocks(), [&](int b) { startBlock(b); });
+  if (clusters.list().empty()) {
+    fillWhole(source, cut);
+  } else {
+    fillBySlabs(source, clusters, cut);
+  }
+  tbb::parallel_for(0, grid_.blocks(), [&](int b) { finishBlock(b); });
 }
 
 PixelArea TileLists::occupied(const PixelArea& area) const {
@@ -223,9 +322,11 @@ std::size_t TileLists::entryCount() const {
 }
 
 std::uint64_t TileLists::bytes() const {
-  std::uint64_t sum = sizeof(Placed) * (unsorted_.capacity() + sorted_.capacity()) +
+  std::uint64_t sum = sizeof(Placed) * sorted_.capacity() + sizeof(Filling) * filling_.capacity() +
                       sizeof(std::uint32_t) * blockEntries_.capacity() +
                       sizeof(TileBlock) * blocks_.capacity();
+  for (const Filling& f : filling_)
+    sum += sizeof(std::uint32_t) * (f.tiles.capacity() + f.members.capacity());
   for (const TileBlock& b : blocks_)
     sum += sizeof(std::uint32_t) * (b.members.capacity() + b.entries.capacity());
   return sum;

@@ -1,9 +1,10 @@
 #pragma once
 // Which primitives a tile's rays can meet, nearest first, and none that an opaque front hides from all of
-// them. Built in parallel: bounds of every primitive, one bucket sort by the nearest depth, distribution to
-// blocks of tiles, then each block by itself, front to back. A tile keeps the cells (pixels) that discs
-// inside its primitives cover whole; once all are covered, what lies behind the farthest of these discs is
-// not listed any more, so the lists hold what can be seen and little else, however deep the scene.
+// them. Built in parallel, front to back in slabs of depth: clusters of primitives that can still be seen,
+// their primitives' bounds, a bucket sort by nearest depth, distribution to blocks of tiles, then each block
+// by itself. A tile keeps the cells (pixels) that discs inside its primitives cover whole; once all are
+// covered, what lies behind the farthest of these discs is not listed any more, and clusters behind it are
+// not even opened. So the lists hold what can be seen and little else, however deep the scene.
 
 #include <array>
 #include <cstdint>
@@ -11,15 +12,17 @@
 #include <span>
 #include <vector>
 
+#include "core/tiles/clusters.h"
 #include "core/tiles/tile_target.h"
 
 namespace meniscus::tiles {
 
 /// Where a primitive can be seen.
 struct Placement {
-  std::int16_t x0 = 0, y0 = 0, x1 = -1, y1 = -1;          ///< tiles of the grid, both ends included
-  float front = -std::numeric_limits<float>::infinity();  ///< view-space z that none of its points exceeds;
-                                                          ///< -infinity: nowhere
+  std::int16_t x0 = 0, y0 = 0, x1 = -1, y1 = -1;  ///< tiles of the grid, both ends included
+  /// View-space z that none of its points exceeds; -infinity: it is nowhere.
+  float front = -std::numeric_limits<float>::infinity();
+  bool visible() const { return front > -std::numeric_limits<float>::infinity(); }
 };
 
 /// A disc across the view (pixels of the picture) that hides what lies below z in view space. radius 0: none.
@@ -28,14 +31,17 @@ struct Occluder {
   float radius = 0, z = 0;
 };
 
-/// Primitives of any kind, by index.
+/// Primitives of any kind, by index. Everything is called from several threads.
 class TileSource {
  public:
   virtual ~TileSource() = default;
   virtual std::size_t size() const = 0;
-  /// The placements of [first, last). Called from several threads.
-  virtual void place(std::size_t first, std::size_t last, Placement* out) const = 0;
+  virtual Placement place(std::size_t index) const = 0;
+  /// Whether place() is placeBall() of the primitive's own bounding sphere.
+  virtual bool isBall(std::size_t index) const = 0;
   virtual Occluder occluder(std::size_t index) const = 0;
+  /// Where anything of a sphere can be seen, relative to the primitives' origin.
+  virtual Placement placeBall(const glm::vec3& center, float radius) const = 0;
 };
 
 /// The lists of a block of tiles.
@@ -52,8 +58,9 @@ struct TileBlock {
 
 class TileLists {
  public:
-  /// cut: whether a tile's list ends where its front is opaque (off: every primitive that may touch it).
-  void build(const TileSource& source, const TileTarget& target, bool cut = true);
+  /// clusters: of the same primitives, or without any; cut: whether a tile's list ends where its front is
+  /// opaque (off: every primitive that may touch it).
+  void build(const TileSource& source, const Clusters& clusters, const TileTarget& target, bool cut = true);
 
   const TileGrid& grid() const { return grid_; }
   const TileBlock& block(int index) const { return blocks_[static_cast<std::size_t>(index)]; }
@@ -62,6 +69,8 @@ class TileLists {
   /// The smallest part of an area that holds all blocks with entries; one pixel if none has any.
   PixelArea occupied(const PixelArea& area) const;
   std::size_t entryCount() const;
+  /// Primitives whose bounds were looked at one by one.
+  std::size_t placedCount() const { return placedCount_; }
   std::uint64_t bytes() const;
 
  private:
@@ -69,17 +78,35 @@ class TileLists {
     Placement place;
     std::uint32_t index;
   };
-  void sortByDepth(const TileSource& source);
+  // Of a block while it is filled.
+  struct Filling {
+    std::array<std::uint64_t, kTilesPerBlock> covered;  // cells
+    std::array<float, kTilesPerBlock> behind;           // nothing below is seen
+    std::array<float, kTilesPerBlock> farthest;         // of the discs that cover cells
+    std::array<std::uint32_t, kTilesPerBlock> counts;
+    std::vector<std::uint32_t> tiles, members;  // of the entries, as they came
+    int open;                                   // tiles not covered
+    float allBehind;                            // the lowest `behind` of those that are
+  };
+  void fillWhole(const TileSource& source, bool cut);
+  void fillBySlabs(const TileSource& source, const Clusters& clusters, bool cut);
+  bool hidden(const Placement& p) const;
+  void sortByDepth(std::vector<Placed>& items);
   void distribute();
+  void startBlock(int index);
   void fillBlock(int index, const TileSource& source, bool cut);
+  void finishBlock(int index);
+  void fillAll(const TileSource& source, bool cut);
   std::uint32_t bucketOf(float front) const;
 
   TileGrid grid_{PixelArea{}};
   float nearZ_ = 0, bucketDepth_ = 0;
   std::uint32_t buckets_ = 1;
-  std::vector<Placed> unsorted_, sorted_;
+  std::size_t placedCount_ = 0;
+  std::vector<Placed> sorted_;
   std::vector<std::uint32_t> blockEntries_;  // positions in sorted_, block after block
   std::vector<std::size_t> blockFirst_;
+  std::vector<Filling> filling_;
   std::vector<TileBlock> blocks_;
 };
 

@@ -59,11 +59,8 @@ Planes castByLists(const Primitives& primitives, const TileTarget& target) {
 Planes castByForce(const Primitives& primitives, const TileTarget& target) {
   const QuadricSource source(primitives, target);
   std::vector<QuadricRecord> records;
-  std::vector<Placement> places(source.size());
-  source.place(0, source.size(), places.data());
   for (std::size_t i = 0; i < source.size(); ++i) {
-    if (!(places[i].front > -std::numeric_limits<float>::infinity())) continue;
-    source.record(i, records.emplace_back());
+    if (source.place(i).visible()) source.record(i, records.emplace_back());
   }
   std::vector<std::uint32_t> list(records.size());
   std::iota(list.begin(), list.end(), 0u);
@@ -155,6 +152,19 @@ TEST_P(Tiles, ListsHideNothingFromWithin) {
   }
 }
 
+// Enough primitives to be grouped; small enough on the screen to be many to a tile.
+TEST_P(Tiles, ClustersHideNothingThatIsSeen) {
+  const Primitives primitives = allKinds(9000, 21);
+  ASSERT_FALSE(clustersOf(primitives).list().empty());
+  const View view = test::viewOf(primitives, {96, 96}, GetParam());
+  const TileTarget target = targetOf(primitives, view);
+  expectSame(castByLists(primitives, target), castByForce(primitives, target), "clusters and brute force");
+  View within = view;
+  within.nearZ = 0;
+  const TileTarget cutOpen = targetOf(primitives, within);
+  expectSame(castByLists(primitives, cutOpen), castByForce(primitives, cutOpen), "from within");
+}
+
 // A cut list serves every sample of its pixels.
 TEST_P(Tiles, ListsAreBuiltOncePerView) {
   const auto primitives = test::randomSpheres(3000, 1);
@@ -240,9 +250,18 @@ TEST(TileLists, DeepScenesAreCut) {
   const TileTarget target = targetOf(*primitives, view);
   const QuadricSource source(*primitives, target);
   TileLists cut, whole;
-  cut.build(source, target);
-  whole.build(source, target, false);
+  const Clusters clusters = clustersOf(*primitives);
+  ASSERT_FALSE(clusters.list().empty());
+  cut.build(source, clusters, target);
+  whole.build(source, {}, target, false);
   EXPECT_LT(cut.entryCount() * 4, whole.entryCount());
+  EXPECT_LT(cut.placedCount() * 4, whole.placedCount() * 3);
+  const TileLists all = [&] {
+    TileLists lists;
+    lists.build(source, clusters, target, false);
+    return lists;
+  }();
+  EXPECT_EQ(all.entryCount(), whole.entryCount());
 }
 
 TEST(TileLists, EmptyScenesAndNonsenseAreNotDrawn) {
