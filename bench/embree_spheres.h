@@ -1,6 +1,7 @@
 #pragma once
 // The same spheres and rays by Embree: what a ray tracer for the processor takes, for comparison.
 
+#include <memory>
 #include <vector>
 
 #include "core/primitives.h"
@@ -8,13 +9,25 @@
 
 namespace meniscus::bench {
 
-struct EmbreeTimes {
-  double buildMs = 0, castMs = 0;
-  std::size_t hits = 0;
-  std::vector<float> distance;  ///< rows from the bottom; infinity = background
-};
+class EmbreeSpheres {
+ public:
+  explicit EmbreeSpheres(const Primitives& primitives);
+  ~EmbreeSpheres();
+  EmbreeSpheres(const EmbreeSpheres&) = delete;
+  EmbreeSpheres& operator=(const EmbreeSpheres&) = delete;
+  /// The hierarchy.
+  void build();
+  /// A ray through every pixel's centre, eight at a time, on all processors.
+  void cast(const View& view);
+  const std::vector<float>& distances() const {
+    return distance_;
+  }  ///< rows from the bottom; infinity = none
 
-/// Builds the hierarchy and casts a ray through every pixel's centre, eight at a time, on all processors.
-EmbreeTimes castByEmbree(const Primitives& primitives, const View& view);
+ private:
+  struct Handles;
+  std::unique_ptr<Handles> handles_;
+  glm::dvec3 origin_;
+  std::vector<float> distance_;
+};
 
 }  // namespace meniscus::bench

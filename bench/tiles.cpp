@@ -3,11 +3,14 @@
 //
 //   tiles [repetitions [atoms ...]] > tiles.csv
 //
-// Times are medians of interleaved repetitions; ratios are within one run. Nothing is read back.
+// Times are medians of interleaved repetitions, by the clock and of the processor (all threads: what a
+// machine busy with other work distorts less); ratios are within one run. Nothing is read back.
 
 #include <fmt/format.h>
 #include <glad/gl.h>
+#include <sys/resource.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -30,6 +33,7 @@ namespace meniscus::bench {
 namespace {
 
 constexpr ImageSize kSize{1024, 768};
+constexpr std::size_t kMostForOthers = 1'000'000;
 
 // A ball of spheres on a disturbed grid, 2.4 Å apart, of radius 1.4 to 1.9 Å.
 Primitives proteinLike(int atoms) {
@@ -94,68 +98,138 @@ class Splatting {
   gl::Buffer uniforms_;
 };
 
-void measure(int atoms, int repetitions) {
-  const Primitives primitives = proteinLike(atoms);
-  const View view = filling(primitives);
-  const tiles::TileTarget target{view, primitives.origin, {0, 0, kSize.width, kSize.height}, {0, 0}};
-  std::map<std::string, std::vector<double>> times;
-  Splatting splatting(primitives);
-  tiles::QuadricTiles caster;
-  // The exact surface of degree six, its supports twice the radii.
+/// Times of one thing, wall and processor (all threads) [ms].
+struct Times {
+  std::vector<double> wall, processor;
+};
+using AllTimes = std::map<std::string, Times>;
+
+void record(AllTimes& times, const std::string& name, bool keep, const std::function<void()>& call) {
+  double wall = 0;
+  const double processor = processorMs([&] {
+    const auto start = std::chrono::steady_clock::now();
+    call();
+    wall = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  });
+  if (!keep) return;
+  times[name].wall.push_back(wall);
+  times[name].processor.push_back(processor);
+}
+
+void printRatio(const AllTimes& times, std::size_t atoms, const std::string& a, const std::string& b) {
+  if (!times.contains(a) || !times.contains(b)) return;
+  fmt::print("ratio,{},\"{} / {}\",{:.2f},{:.2f}\n", atoms, a, b,
+             median(times.at(a).wall) / median(times.at(b).wall),
+             median(times.at(a).processor) / median(times.at(b).processor));
+}
+
+// The exact surface of degree six, its supports twice the radii.
+MetaballField surfaceOf(const Primitives& primitives) {
   MetaballField field;
   for (const SpherePrimitive& sphere : primitives.spheres)
     field.balls.push_back({sphere.center, 2 * sphere.radius, 1, sphere.color, sphere.id});
-  tiles::FieldTiles surface;
-  tiles::FieldCounts counts;
-  tiles::Planes planes;
-  std::size_t hits = 0, embreeHits = 0;
-  for (int repetition = -1; repetition < repetitions; ++repetition) {  // the first warms up
-    std::map<std::string, double> now;
-    caster.setPrimitives(&primitives);
-    now["tiles, all"] = timeMs([&] { caster.cast(target, {}, planes); });
-    now["tiles, lists there"] = timeMs([&] { caster.cast(target, {}, planes); });
-    surface.setField(&field);
-    now["surface, all"] = timeMs([&] { surface.cast(target, {}, planes); });
-    surface.takeCounts();
-    now["surface, lists there"] = timeMs([&] { surface.cast(target, {}, planes); });
-    counts = surface.takeCounts();
-    if (atoms <= 1000000) now["splat"] = timeMs([&] { splatting.draw(view); });
-#ifdef MENISCUS_BENCH_EMBREE
-    const EmbreeTimes embree = castByEmbree(primitives, view);
-    now["embree, build"] = embree.buildMs;
-    now["embree, cast"] = embree.castMs;
-    now["embree, all"] = embree.buildMs + embree.castMs;
-    embreeHits = embree.hits;
-#endif
-    if (repetition >= 0)
-      for (const auto& [name, ms] : now) times[name].push_back(ms);
-  }
-  caster.cast(target, {}, planes);
-  for (const float d : planes.depth) hits += d > 0;
-  for (const auto& [name, all] : times)
-    fmt::print("time,{},\"{}\",{:.2f}\n", primitives.spheres.size(), name, median(all));
-  const double mine = median(times["tiles, all"]);
-  for (const char* other : {"splat", "embree, all"}) {
-    if (times.contains(other))
-      fmt::print("ratio,{},\"{} / tiles, all\",{:.2f}\n", primitives.spheres.size(), other,
-                 median(times[other]) / mine);
-  }
-  if (times.contains("embree, all"))
-    fmt::print("ratio,{},\"embree, all / surface, all\",{:.2f}\n", primitives.spheres.size(),
-               median(times["embree, all"]) / median(times["surface, all"]));
+  return field;
+}
+
+void printCounts(std::size_t atoms, const tiles::FieldCounts& counts) {
   const auto perRay = [&](const char* what, std::uint64_t n) {
-    fmt::print("ray,{},\"{}\",{:.2f}\n", primitives.spheres.size(), what,
+    fmt::print("ray,{},\"{}\",{:.2f},\n", atoms, what,
                static_cast<double>(n) / static_cast<double>(counts.rays));
   };
   perRay("intervals", counts.intervals);
   perRay("pieces", counts.pieces);
   perRay("iterations", counts.iterations);
-  fmt::print("lists,{},\"surface entries\",{}\n", primitives.spheres.size(), surface.lists().entryCount());
-  fmt::print("lists,{},\"entries\",{}\n", primitives.spheres.size(), caster.lists().entryCount());
-  fmt::print("lists,{},\"MiB\",{:.1f}\n", primitives.spheres.size(),
+}
+
+double peakMiB() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+void measure(int wanted, int repetitions) {
+  const Primitives primitives = proteinLike(wanted);
+  const std::size_t atoms = primitives.spheres.size();
+  const View view = filling(primitives);
+  const tiles::TileTarget target{view, primitives.origin, {0, 0, kSize.width, kSize.height}, {0, 0}};
+  const MetaballField field = surfaceOf(primitives);
+  AllTimes times;
+  std::unique_ptr<Splatting> splatting;
+  if (atoms <= kMostForOthers) splatting = std::make_unique<Splatting>(primitives);
+  tiles::QuadricTiles caster;
+  tiles::FieldTiles surface;
+  tiles::FieldCounts counts;
+  tiles::Planes planes;
+  // Whatever has to be done again when the view changes.
+  const auto changed = [&](int repetition) {
+    tiles::TileTarget t = target;
+    t.view.nearZ += 1e-6 * (repetition + 2);
+    return t;
+  };
+  for (int repetition = -1; repetition < repetitions; ++repetition) {  // the first warms up
+    const bool keep = repetition >= 0;
+    const tiles::TileTarget now = changed(repetition);
+    record(times, "scene: clusters", keep, [&] { caster.setPrimitives(&primitives); });
+    record(times, "spheres by tiles", keep, [&] { caster.cast(now, {}, planes); });
+    record(times, "spheres by tiles, lists there", keep, [&] { caster.cast(now, {}, planes); });
+    if (repetition < 0) surface.setField(&field);
+    record(times, "surface by tiles", keep, [&] { surface.cast(now, {}, planes); });
+    surface.takeCounts();
+    record(times, "surface by tiles, lists there", keep, [&] { surface.cast(now, {}, planes); });
+    counts = surface.takeCounts();
+    if (splatting) record(times, "spheres splatted", keep, [&] { splatting->draw(view); });
+#ifdef MENISCUS_BENCH_EMBREE
+    if (atoms > kMostForOthers) continue;
+    EmbreeSpheres embree(primitives);
+    record(times, "spheres by Embree: build", keep, [&] { embree.build(); });
+    record(times, "spheres by Embree: cast", keep, [&] { embree.cast(view); });
+    if (!keep) continue;
+    for (auto part : {&Times::wall, &Times::processor})
+      (times["spheres by Embree"].*part)
+          .push_back((times["spheres by Embree: build"].*part).back() +
+                     (times["spheres by Embree: cast"].*part).back());
+#endif
+  }
+  for (const auto& [name, all] : times)
+    fmt::print("time,{},\"{}\",{:.2f},{:.2f}\n", atoms, name, median(all.wall), median(all.processor));
+  printRatio(times, atoms, "spheres splatted", "spheres by tiles");
+  printRatio(times, atoms, "spheres by Embree", "spheres by tiles");
+  printRatio(times, atoms, "spheres by Embree", "surface by tiles");
+  printCounts(atoms, counts);
+  fmt::print("lists,{},\"spheres: entries\",{},\n", atoms, caster.lists().entryCount());
+  fmt::print("lists,{},\"spheres: looked at\",{},\n", atoms, caster.lists().placedCount());
+  fmt::print("lists,{},\"spheres: MiB\",{:.1f},\n", atoms,
              static_cast<double>(caster.lists().bytes()) / (1 << 20));
-  fmt::print("hits,{},\"tiles\",{}\nhits,{},\"embree\",{}\n", primitives.spheres.size(), hits,
-             primitives.spheres.size(), embreeHits);
+  fmt::print("lists,{},\"surface: entries\",{},\n", atoms, surface.lists().entryCount());
+  fmt::print("memory,{},\"peak of the process so far, MiB\",{:.0f},\n", atoms, peakMiB());
+  std::fflush(stdout);
+}
+
+// What the width of the vectors brings.
+void measureWidths(int wanted, int repetitions) {
+  const Primitives primitives = proteinLike(wanted);
+  const tiles::TileTarget target{
+      filling(primitives), primitives.origin, {0, 0, kSize.width, kSize.height}, {0, 0}};
+  const MetaballField field = surfaceOf(primitives);
+  tiles::QuadricTiles caster;
+  caster.setPrimitives(&primitives);
+  tiles::FieldTiles surface;
+  surface.setField(&field);
+  tiles::Planes planes;
+  AllTimes times;
+  for (int repetition = -1; repetition < repetitions; ++repetition) {
+    for (const std::string& set : tiles::instructionSets()) {
+      tiles::useInstructionSet(set);
+      record(times, "spheres, lists there, " + set, repetition >= 0,
+             [&] { caster.cast(target, {}, planes); });
+      record(times, "surface, lists there, " + set, repetition >= 0,
+             [&] { surface.cast(target, {}, planes); });
+      tiles::useInstructionSet("");
+    }
+  }
+  for (const auto& [name, all] : times)
+    fmt::print("width,{},\"{}\",{:.2f},{:.2f}\n", primitives.spheres.size(), name, median(all.wall),
+               median(all.processor));
   std::fflush(stdout);
 }
 
@@ -167,9 +241,10 @@ int main(int argc, char** argv) {
     using namespace meniscus;
     const auto context = Context::create(Backend::automatic);
     const int repetitions = argc > 1 ? std::atoi(argv[1]) : 9;
-    fmt::print("kind,atoms,what,value\n# {}\n", tiles::instructionSet());
+    fmt::print("kind,atoms,what,value or wall ms,processor ms\n# {}\n", tiles::instructionSet());
     if (argc <= 2) {
       for (const int atoms : {58000, 300000, 1000000}) bench::measure(atoms, repetitions);
+      bench::measureWidths(58000, repetitions);
     }
     for (int i = 2; i < argc; ++i) bench::measure(std::atoi(argv[i]), repetitions);
     return 0;
