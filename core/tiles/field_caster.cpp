@@ -346,7 +346,7 @@ class Walk {
     count_ = kept;
   }
 
-  static constexpr float kRounding = 6e-7f;
+  static constexpr float kRounding = 6e-8f;
 
   Kernel kernel_;
   const FieldTile& tile_;
