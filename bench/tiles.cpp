@@ -27,6 +27,7 @@
 #include "core/tiles/quadric_tiles.h"
 #include "render/gl/context.h"
 #include "render/quadrics.h"
+#include "render/renderer.h"
 #include "render/view_block.h"
 
 namespace meniscus::bench {
@@ -205,6 +206,42 @@ void measure(int wanted, int repetitions) {
   std::fflush(stdout);
 }
 
+// A full frame, its view changing: soft shadows, silhouettes, depth unsharp masking, one ray per pixel.
+void measureFrames(int wanted, int repetitions) {
+  const Primitives spheres = proteinLike(wanted);
+  Primitives surface;
+  surface.surfaces.push_back(surfaceOf(spheres));
+  RenderSettings settings;
+  settings.samples = 1;
+  settings.shadows.mode = ShadowMode::soft;
+  settings.lines.silhouettes = true;
+  settings.depthUnsharp.mode = UnsharpMode::both;
+  const std::pair<const char*, const Primitives*> scenes[] = {{"spheres", &spheres}, {"surface", &surface}};
+  for (const auto& [name, scene] : scenes) {
+    Renderer renderer(RendererOptions{.shaderDir = {}, .timePasses = true, .maxTileSize = 0});
+    renderer.setPrimitives(std::make_shared<Primitives>(*scene));
+    View view = filling(spheres);
+    AllTimes times;
+    std::map<std::string, double> passes;
+    for (int repetition = -1; repetition < repetitions; ++repetition) {
+      view.nearZ += 1e-6;
+      NullSink sink;
+      record(times, "frame", repetition >= 0,
+             [&] { renderer.renderPicture(view, Lighting{}, {}, settings, PixelFormat::rgba8, sink); });
+      for (const PassStats& pass : renderer.stats().passes) {
+        if (repetition < 0) passes[pass.name] -= pass.milliseconds;
+        if (repetition + 1 == repetitions) passes[pass.name] += pass.milliseconds;
+      }
+    }
+    fmt::print("frame,{},\"{}: frame\",{:.2f},{:.2f}\n", spheres.spheres.size(), name,
+               median(times.at("frame").wall), median(times.at("frame").processor));
+    for (const auto& [pass, ms] : passes)
+      fmt::print("frame,{},\"{}: {} (mean)\",{:.2f},\n", spheres.spheres.size(), name, pass,
+                 ms / repetitions);
+  }
+  std::fflush(stdout);
+}
+
 // What the width of the vectors brings.
 void measureWidths(int wanted, int repetitions) {
   const Primitives primitives = proteinLike(wanted);
@@ -245,6 +282,7 @@ int main(int argc, char** argv) {
     if (argc <= 2) {
       for (const int atoms : {58000, 300000, 1000000}) bench::measure(atoms, repetitions);
       bench::measureWidths(58000, repetitions);
+      bench::measureFrames(58000, repetitions);
     }
     for (int i = 2; i < argc; ++i) bench::measure(std::atoi(argv[i]), repetitions);
     return 0;
