@@ -61,7 +61,7 @@ struct MeasureOptions {
 
 int runSweep(const MeasureOptions& options) {
   const Sweep sweep = loadSweep(options.sweep);
-  const OutputFolder folder(options.folder, sweep);
+  const OutputFolder folder(options.folder, sweep, !options.drawCells.empty());
   if (!options.drawCells.empty()) {
     if (!sweep.stability) throw UsageError("--draw-cells: the sweep has no stability scenes");
     drawCells(sweep, folder, options.drawCells);

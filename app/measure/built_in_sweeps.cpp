@@ -14,7 +14,7 @@ constexpr BuiltInSweep kSweeps[] = {
   "steps": 4,
   "scaling": [100, 1000, 4000],
   "repetitions": 3,
-  "budget": 20,
+  "budget": 25,
   "leavingOut": "1ubq.pdb"
 })"},
     {"surface", "every surface method on three proteins, two views, up to 100,000 balls", R"({

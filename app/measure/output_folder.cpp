@@ -1,7 +1,11 @@
 #include "app/measure/output_folder.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -26,9 +30,14 @@ Json readSidecar(const fs::path& path) {
   return Json::parse(text, nullptr, false);
 }
 
+[[noreturn]] void throwBusy(const fs::path& path) {
+  throw InputError(fmt::format("another process measures into '{}'; wait for it, or give -o another folder",
+                               path.string()));
+}
+
 }  // namespace
 
-OutputFolder::OutputFolder(fs::path path, const Sweep& sweep) : path_(std::move(path)) {
+OutputFolder::OutputFolder(fs::path path, const Sweep& sweep, bool shared) : path_(std::move(path)) {
   std::error_code error;
   if (fs::exists(path_, error) && !fs::is_directory(path_, error))
     throw InputError(fmt::format("cannot write to '{}': it is a file; give -o a folder", path_.string()));
@@ -44,6 +53,18 @@ OutputFolder::OutputFolder(fs::path path, const Sweep& sweep) : path_(std::move(
                                    (path_ / name).string(), error.message()));
   }
   requireWritable(path_ / kSidecar);
+  if (!shared) lock();
+}
+
+OutputFolder::~OutputFolder() {
+  if (lock_ >= 0) close(lock_);
+}
+
+// Held until the process ends, however it does.
+void OutputFolder::lock() {
+  lock_ = open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (lock_ < 0) throwWriteError(path_, errno);
+  if (flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) throwBusy(path_);
 }
 
 void OutputFolder::describe(const Sweep& sweep, const Machine& machine) const {

@@ -17,9 +17,12 @@ struct Machine {
 
 class OutputFolder {
  public:
-  /// Makes the folder if it is not there. Throws InputError if it cannot be written, or holds the points of
-  /// another sweep.
-  OutputFolder(std::filesystem::path path, const Sweep& sweep);
+  /// Makes the folder if it is not there. Throws InputError if it cannot be written, holds the points of
+  /// another sweep or, unless it is to be shared, if another process measures into it.
+  OutputFolder(std::filesystem::path path, const Sweep& sweep, bool shared = false);
+  ~OutputFolder();
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
 
   /// Writes sidecar.json. Throws InputError if what is there was measured by another machine or program.
   void describe(const Sweep& sweep, const Machine& machine) const;
@@ -28,7 +31,10 @@ class OutputFolder {
   const std::filesystem::path& path() const { return path_; }
 
  private:
+  void lock();
+
   std::filesystem::path path_;
+  int lock_ = -1;  // a descriptor
 };
 
 /// "GenuineIntel ...": the processor's name.

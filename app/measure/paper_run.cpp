@@ -10,6 +10,7 @@
 
 #include "app/measure/csv.h"
 #include "app/measure/measure_scene.h"
+#include "app/measure/stability.h"
 #include "app/measure/statistics.h"
 #include "core/error.h"
 #include "core/generated_scenes.h"
@@ -114,7 +115,11 @@ double PaperRun::timeOf(const std::string& method, const std::shared_ptr<const P
   const View view = viewOf(*primitives, {}, size);
   RenderSettings settings;
   settings.samples = 1;
-  if (surface) settings.surface.method = method;
+  if (surface) {
+    settings.surface.method = method;
+  } else {
+    settings.quadrics = *quadricMethodNamed(method);
+  }
   std::vector<double> times;
   for (int i = -1; i < sweep_.repetitions; ++i) {
     const auto start = std::chrono::steady_clock::now();
@@ -137,8 +142,6 @@ void PaperRun::measureTable(const PaperTable& table, const std::string& method, 
     std::string refused;
     try {
       ms = timeOf(method, scene(row.balls, table.surface), size, table.surface);
-    } catch (const GraphicsError&) {
-      throw;
     } catch (const Error& error) {
       refused = error.what();
     }
@@ -171,7 +174,8 @@ void PaperRun::run() {
     const ImageSize size{std::max(1, static_cast<int>(table.size.width * scale)),
                          std::max(1, static_cast<int>(table.size.height * scale))};
     std::vector<std::string> methods;
-    if (!table.surface) methods = {"quadrics"};
+    if (!table.surface)
+      for (const NamedQuadricMethod& quadrics : kQuadricMethods) methods.emplace_back(quadrics.name);
     if (table.surface)
       for (const SurfaceMethodInfo& method : surfaceMethods()) methods.emplace_back(method.name);
     for (const std::string& method : methods) {

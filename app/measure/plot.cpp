@@ -53,6 +53,7 @@ class Drawing {
  public:
   Drawing(const Plot& plot, const std::vector<std::size_t>& colors) : plot_(plot), colors_(colors) {}
   std::string svg();
+  std::string file();
 
  private:
   bool shown(const PlotPoint& p) const {
@@ -63,11 +64,13 @@ class Drawing {
   void grid();
   void series(const PlotSeries& s, std::size_t color);
   void front();
+  void legend();
 
   const Plot& plot_;
   const std::vector<std::size_t>& colors_;
   Axis x_, y_;
   std::string out_;
+  bool links_ = true;
 };
 
 bool Drawing::fit() {
@@ -164,8 +167,10 @@ void Drawing::series(const PlotSeries& s, std::size_t color) {
     const double x = x_.at(p.x), y = y_.at(yOf(p));
     const std::string style =
         fmt::format("fill=\"{}\" stroke=\"{}\" stroke-width=\"{}\"", p.front ? stroke : "#fff", stroke, 1.8);
-    out_ += fmt::format("<a href=\"{}\"><title>{}</title>{}</a>", escaped(p.link), escaped(p.title),
-                        marker(kMarkers[color % std::size(kMarkers)], x, y, 4.2, style));
+    const std::string mark = marker(kMarkers[color % std::size(kMarkers)], x, y, 4.2, style);
+    out_ += links_ ? fmt::format("<a href=\"{}\"><title>{}</title>{}</a>", escaped(p.link), escaped(p.title),
+                                 mark)
+                   : mark;
   }
 }
 
@@ -179,7 +184,42 @@ std::string Drawing::svg() {
   return out_ + "</svg>";
 }
 
+void Drawing::legend() {
+  double y = y_.to + 18;
+  for (std::size_t i = 0; i < plot_.series.size(); ++i, y += 18) {
+    out_ += marker(kMarkers[colors_[i] % std::size(kMarkers)], x_.to - 12, y - 4, 4.2,
+                   fmt::format("fill=\"{0}\" stroke=\"{0}\"", seriesColor(colors_[i])));
+    out_ += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\" class=\"label\">{}</text>",
+                        x_.to - 22, y, escaped(plot_.series[i].name));
+  }
+}
+
+// Links lead nowhere outside of the page.
+std::string Drawing::file() {
+  constexpr const char* kStyle =
+      "text{font-family:system-ui,'DejaVu Sans',sans-serif;font-size:11px;fill:#5d6b7a}"
+      ".title{font-size:13px;font-weight:600;fill:#1c2530}.label{font-size:12px;fill:#1c2530}"
+      ".note{font-style:italic}.major{stroke:#d5dce3}.minor{stroke:#eef1f4}.frame{fill:none;stroke:#9aa7b3}"
+      ".floor{stroke:#9aa7b3;stroke-dasharray:5 4}"
+      ".front{fill:none;stroke:#1c2530;stroke-width:1.1;stroke-dasharray:2 3;opacity:.65}";
+  if (!fit()) return "";
+  out_ = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\">"
+      "<style>{2}</style><rect width=\"{0}\" height=\"{1}\" fill=\"#fff\"/>\n",
+      kWidth, kHeight, kStyle);
+  links_ = false;
+  grid();
+  if (plot_.joinFront) front();
+  for (std::size_t i = 0; i < plot_.series.size(); ++i) series(plot_.series[i], colors_[i]);
+  legend();
+  return out_ + "</svg>\n";
+}
+
 }  // namespace
+
+std::string svgFileOf(const Plot& plot, const std::vector<std::size_t>& colors) {
+  return Drawing(plot, colors).file();
+}
 
 std::string svgOf(const Plot& plot, const std::vector<std::size_t>& colors) {
   return Drawing(plot, colors).svg();

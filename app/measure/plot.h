@@ -29,6 +29,9 @@ struct Plot {
 /// of each series' colour, so that a name has the same in all diagrams.
 std::string svgOf(const Plot& plot, const std::vector<std::size_t>& colors);
 
+/// The same as a file of its own, with a legend in it.
+std::string svgFileOf(const Plot& plot, const std::vector<std::size_t>& colors);
+
 /// Colour of an index, "#rrggbb"; they repeat after ten.
 const char* seriesColor(std::size_t index);
 

@@ -208,6 +208,7 @@ void Report::workPrecision() {
       "Error against time, both logarithmic; below and to the left is better. A line is a method, its "
       "points its parameter. Filled points are on the Pareto front (dotted): nothing is both faster "
       "and more exact. Hover for numbers, click for the picture of the error.");
+  int files = 0;
   for (const Group& group : all) {
     if (group.scaling) continue;
     std::vector<std::string> methods;
@@ -260,6 +261,9 @@ void Report::workPrecision() {
         fmt::format("<div class=\"pair\"><div class=\"plot\">{}</div><div class=\"plot\">{}</div></div>\n",
                     svgOf(error, colors), svgOf(wrongs, colors));
     finding(group);
+    error.title = fmt::format("{}, {} view, {}, {} balls", group.scene, group.view, group.size,
+                              points_.text(group.rows.front(), "atoms"));
+    writeTextFile(folder_ / fmt::format("precision-{}.svg", ++files), svgFileOf(error, colors));
   }
   out_ += "</section>\n";
 }
@@ -287,6 +291,7 @@ void Report::scaling() {
     std::sort(s.points.begin(), s.points.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
   std::vector<std::size_t> colors;
   for (const std::string& method : methods) colors.push_back(colorOf(method));
+  writeTextFile(folder_ / "scaling.svg", svgFileOf(time, colors));
   sectionHead(
       "scaling", "More balls",
       "Packed as densely as a protein's atoms, the whole of it filling the picture; every method with "
@@ -428,7 +433,7 @@ void Report::matrix() {
       if (status == "degraded") {
         text = share > 0                    ? fmt::format("{} % wrong", shortNumber(100 * share))
                : normal > 0.1 && p99 < 1e-2 ? fmt::format("normals {}°", shortNumber(normal))
-                                            : fmt::format("off by {}", shortNumber(p99));
+                                            : fmt::format("off by {} detail", shortNumber(p99));
         kind = share < 1e-3 && p99 < 1e-2 ? "slight" : share > 0.05 || p99 > 1 ? "bad" : "degraded";
       }
       const std::string title = fmt::format(

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -45,7 +46,7 @@ const StabilityRecipe& recipeOf(const std::string& name) {
 }
 
 const std::shared_ptr<const Primitives>& drawnBy(const std::string& method, const StabilityScene& scene) {
-  return method == kQuadrics ? scene.quadrics : scene.surface;
+  return quadricMethodNamed(method) ? scene.quadrics : scene.surface;
 }
 
 // Nothing if the scene cannot have one: it must be refused.
@@ -99,11 +100,13 @@ Cell drawCell(Renderer& renderer, const std::string& method, const StabilityScen
   Cell cell;
   const std::shared_ptr<const Primitives>& primitives = drawnBy(method, scene);
   try {
+    const std::optional<QuadricMethod> quadrics = quadricMethodNamed(method);
     SurfaceSettings settings;
-    if (method != kQuadrics) settings.method = method;
+    if (!quadrics) settings.method = method;
     renderer.setPrimitives(primitives);
     const Clock::time_point start = Clock::now();
-    const HitImage image = renderer.renderHits(scene.view, {true, true, true}, settings);
+    const HitImage image = renderer.renderHits(scene.view, {true, true, true}, settings,
+                                               quadrics.value_or(QuadricMethod::automatic));
     ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
     if (!truth) {
       cell.message = "drew what cannot be drawn instead of refusing it";
@@ -212,7 +215,7 @@ class StabilityRun {
       progress_.update(kTruthShare * static_cast<double>(i) / static_cast<double>(spec_.scenes.size()));
       const StabilityScene scene = recipeOf(spec_.scenes[i]).make(sweep_.seed, spec_.size);
       truthIfAny(*scene.quadrics, scene.view, folder_);
-      if (methods.size() > 1) truthIfAny(*scene.surface, scene.view, folder_);
+      if (methods.size() > std::size(kQuadricMethods)) truthIfAny(*scene.surface, scene.view, folder_);
     }
   }
 
@@ -266,14 +269,27 @@ class StabilityRun {
     for (const Row& row : cells.rows()) {
       nlohmann::ordered_json cell = {{"status", row[2]}};
       if (!row[3].empty()) {
-        cell["wrong_share"] = std::stod(row[3]);
-        cell["p99_detail"] = row[4] == "inf" ? 1e30 : std::stod(row[4]);
-        cell["normal_rms_deg"] = std::stod(row[5]);
+        const auto rounded = [](const std::string& text) {
+          return text == "inf" ? 1e30 : std::stod(fmt::format("{:.3g}", std::stod(text)));
+        };
+        cell["wrong_share"] = rounded(row[3]);
+        cell["p99_detail"] = rounded(row[4]);
+        cell["normal_rms_deg"] = rounded(row[5]);
       }
       json[row[kMethod]][row[kScene]] = cell;
     }
-    writeTextFile(folder_ / "stability.json",
-                  json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    // A cell a line: what changed is seen.
+    std::string text = "{";
+    for (const auto& [method, scenes] : json.items()) {
+      text += fmt::format("{}\n \"{}\": {{", text.size() > 1 ? "," : "", method);
+      bool first = true;
+      for (const auto& [scene, cell] : scenes.items()) {
+        text += fmt::format("{}\n  \"{}\": {}", first ? "" : ",", scene, cell.dump());
+        first = false;
+      }
+      text += "\n }";
+    }
+    writeTextFile(folder_ / "stability.json", text + "\n}\n");
   }
 
   const Sweep& sweep_;
@@ -296,8 +312,15 @@ Row cellColumns() {
           "max_angstrom", "ms",       "picture", "message"};
 }
 
+std::optional<QuadricMethod> quadricMethodNamed(const std::string& name) {
+  for (const NamedQuadricMethod& quadrics : kQuadricMethods)
+    if (quadrics.name == name) return quadrics.method;
+  return std::nullopt;
+}
+
 std::vector<std::string> stabilityMethods() {
-  std::vector<std::string> methods = {kQuadrics};
+  std::vector<std::string> methods;
+  for (const NamedQuadricMethod& quadrics : kQuadricMethods) methods.emplace_back(quadrics.name);
   for (const SurfaceMethodInfo& method : surfaceMethods()) methods.emplace_back(method.name);
   return methods;
 }
@@ -333,6 +356,8 @@ void measureStability(const Sweep& sweep, const std::string& sweepArgument, cons
 }
 
 void drawCells(const Sweep& sweep, const OutputFolder& folder, const std::string& method) {
+  // Whoever started it is killed: nobody would wait for it, and another run would draw the same cells.
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
   const auto context = Context::create(Backend::automatic);
   Renderer renderer;
   GrowingCsv cells(folder / "cells.csv", cellColumns());

@@ -2,6 +2,7 @@
 // The stability matrix: every way to draw on every stiff or extreme scene (core/generated_scenes.h), each
 // cell in a process that may hang or crash without harm.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "core/hit_errors.h"
 #include "core/hit_image.h"
 #include "core/reference_tracer.h"
+#include "core/render_settings.h"
 
 namespace meniscus::measure {
 
@@ -31,9 +33,16 @@ const char* nameOf(Cell::Status status);
 /// rounding of float32, normals within 0.1 degrees. Failed: a number in it is not one.
 Cell judgeCell(const HitImage& image, const ReferenceImage& truth, double detail);
 
-/// What is drawn besides the registered surface methods.
-inline constexpr const char* kQuadrics = "quadrics";
-/// Rows of the matrix: "quadrics" and every surface method.
+/// Ways to draw quadrics, by the names they have beside the surface methods.
+struct NamedQuadricMethod {
+  const char* name;
+  QuadricMethod method;
+};
+inline constexpr NamedQuadricMethod kQuadricMethods[] = {{"quadrics-splat", QuadricMethod::splat},
+                                                         {"quadrics-tiles", QuadricMethod::tiles}};
+/// Nothing if it is not one of them.
+std::optional<QuadricMethod> quadricMethodNamed(const std::string& name);
+/// Columns of the matrix: every way to draw quadrics, and every surface method.
 std::vector<std::string> stabilityMethods();
 
 Row cellColumns();

@@ -52,7 +52,7 @@ class SurfaceRun {
   std::shared_ptr<const Primitives> primitives_;
   View view_;
   ReferenceImage truth_;
-  std::size_t units_ = 0, doneUnits_ = 0, doneGroups_ = 0, groups_ = 0;
+  std::size_t units_ = 0, doneUnits_ = 0, donePoints_ = 0, points_ = 0;
   Clock::time_point start_ = Clock::now();
 };
 
@@ -123,8 +123,6 @@ bool SurfaceRun::measureOnce(const PlannedGroup& group, Pending& pending, bool j
       for (const ResourceStats& resource : *list) result.bytes += resource.bytes;
     judge(group, pending, image);
     return true;
-  } catch (const GraphicsError&) {
-    throw;
   } catch (const Error& error) {
     result = {};
     result.refused = error.what();
@@ -139,7 +137,8 @@ void SurfaceRun::measureGroup(const PlannedGroup& group) {
   if (pending.empty()) return;
   advance(fmt::format("{}, {}: the truth", group.scene.name, group.view.name));
   loadScene(group);
-  const double share = static_cast<double>(++doneGroups_) / static_cast<double>(groups_);
+  donePoints_ += pending.size();
+  const double share = static_cast<double>(donePoints_) / static_cast<double>(points_);
   int round = 0;
   for (; round < sweep_.repetitions; ++round) {
     const bool overBudget = sweep_.budget > 0 && since(start_) > 1000 * sweep_.budget * share;
@@ -162,7 +161,7 @@ void SurfaceRun::run() {
     std::size_t missing = 0;
     for (const PlannedPoint& point : group.points) missing += !tables_.has(group, point);
     units_ += missing * static_cast<std::size_t>(sweep_.repetitions);
-    groups_ += missing > 0;
+    points_ += missing;
   }
   for (const PlannedGroup& group : plan_) measureGroup(group);
 }
