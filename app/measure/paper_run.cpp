@@ -55,7 +55,8 @@ const std::vector<PaperTable>& paperTables() {
        {1024, 768},
        true,
        {{10000, 230.4}, {50000, 366.3}, {100000, 571.4}},
-       "as at 640x480"},
+       "a fluid in a tank there, of which ever more is hidden; a ball of packed balls here, whose surface "
+       "always fills the picture"},
       {"Gourmel et al. 2010, doi 10.1111/j.1467-8659.2009.01597.x",
        "Table 1: FBVH, molecules 1 and 2",
        {1024, 768},
