@@ -7,7 +7,7 @@ namespace meniscus::measure {
 namespace {
 
 constexpr BuiltInSweep kSweeps[] = {
-    {"quick", "every surface method on ubiquitin and on packed balls, under a minute", R"({
+    {"quick", "a protein and packed balls, under a minute", R"({
   "sizes": ["240x180"],
   "scenes": [{"molecule": "1ubq.pdb", "name": "ubiquitin"}],
   "methods": "all",
@@ -17,7 +17,7 @@ constexpr BuiltInSweep kSweeps[] = {
   "budget": 25,
   "leavingOut": "1ubq.pdb"
 })"},
-    {"surface", "every surface method on three proteins, two views, up to 100,000 balls", R"({
+    {"surface", "three proteins, two views, up to 100,000 balls", R"({
   "sizes": ["640x480"],
   "scenes": [
     {"molecule": "1ubq.pdb", "name": "ubiquitin"},
@@ -31,7 +31,7 @@ constexpr BuiltInSweep kSweeps[] = {
   "repetitions": 5,
   "leavingOut": "2hhb.pdb.gz"
 })"},
-    {"shadows", "samples of soft shadows: error against time", R"({
+    {"shadows", "samples of soft shadows", R"({
   "repetitions": 5,
   "sizes": ["1024x768"],
   "shadows": [
@@ -42,10 +42,10 @@ constexpr BuiltInSweep kSweeps[] = {
     {"molecule": "7ddo.pdb.gz", "name": "ACE2 x 8, space-filling", "copies": [2, 2, 2]}
   ]
 })"},
-    {"stability", "every method on stiff and extreme scenes: exact, degraded, refused", R"({
+    {"stability", "stiff and extreme scenes, every method", R"({
   "stability": {"size": "96x72", "timeLimit": 120}
 })"},
-    {"papers", "the papers' tables beside the same measurement here", R"({
+    {"papers", "the papers' tables beside the same, here", R"({
   "repetitions": 3,
   "papers": {"scale": 0.5, "mostBalls": 100000}
 })"},

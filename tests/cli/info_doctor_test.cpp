@@ -117,10 +117,10 @@ TEST_F(Program, helpsWithItselfAndEveryCommand) {
   for (const char* option : {"--help", "-h", "help"}) {
     const ProcessResult result = run({option});
     expectSuccess(result);
-    for (const char* part : {"render", "info", "doctor", "Examples:", "Exit codes"})
+    for (const char* part : {"render", "info", "measure", "doctor", "Examples:", "Exit codes"})
       EXPECT_NE(result.out.find(part), std::string::npos) << part;
   }
-  for (const char* command : {"render", "info", "doctor"}) {
+  for (const char* command : {"render", "info", "measure", "doctor"}) {
     const ProcessResult result = run({command, "--help"});
     expectSuccess(result);
     EXPECT_NE(result.out.find("Usage: meniscus " + std::string(command)), std::string::npos);
