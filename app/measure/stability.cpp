@@ -239,7 +239,7 @@ class StabilityRun {
       const double seconds = std::chrono::duration<double>(Clock::now() - since).count();
       if (seconds > spec_.timeLimit) {
         worker.end();
-        fail(method, current, fmt::format("hung: took longer than {} s", spec_.timeLimit));
+        fail(method, current, fmt::format("too slow: not done within {} s", spec_.timeLimit));
         return;
       }
     }
