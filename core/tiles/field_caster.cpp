@@ -274,7 +274,7 @@ class Walk {
     const F f;
     const V zero = hn::Zero(f), half = all(0.5f);
     V low = zero, high = all(1.0f), atLow = polynomial_.get(0), atHigh = polynomial_.get(kernel_.degree());
-    V root = high;
+    V valueLow = atLow, valueHigh = atHigh;  // without the weights
     const V width = next_ - now_;
     const V least = hn::Max(all(tolerance_), hn::Max(hn::Abs(now_), hn::Abs(next_)) * all(1.2e-7f)) / width;
     V before = all(4.0f);  // width of the bracket two steps ago
@@ -291,6 +291,10 @@ class Walk {
       // Outside, or not a number (both ends zero).
       u = hn::IfThenElse(hn::And(u > low, u < high), u, middle);
       u = hn::IfThenElse(slow, middle, u);
+      // Not nearer to an end than the tolerance: an end that is the root, nearly, is closed in by one step,
+      // and a secant that creeps along a steep field does not pass for one that has arrived.
+      const V step = hn::Min(least, half * span);
+      u = hn::Min(hn::Max(u, low + step), high - step);
       const V value = polynomialAt(u);
       const M above = value > zero;
       const M up = hn::And(active, above), down = hn::AndNot(above, active);
@@ -309,16 +313,20 @@ class Walk {
       const V newLow = hn::IfThenElse(down, value, hn::IfThenElse(up, atLow * lowWeight, atLow));
       atHigh = hn::IfThenElse(up, value, hn::IfThenElse(down, atHigh * highWeight, atHigh));
       atLow = newLow;
+      valueLow = hn::IfThenElse(down, value, valueLow);
+      valueHigh = hn::IfThenElse(up, value, valueHigh);
       lastUp = above;
       lastDown = hn::Not(above);
-      const M moved = hn::Abs(u - root) > least;
-      root = hn::IfThenElse(active, u, root);
-      active = hn::And(hn::And(active, moved),
-                       hn::And(hn::Abs(value) > all(kRounding * level_), high - low > least));
+      active =
+          hn::And(active, hn::And(hn::Abs(value) > all(kRounding * level_), high - low > all(1.5f) * least));
     }
     counts_.notConverged += hn::CountTrue(f, active);
     if (most > counts_.mostIterations) counts_.mostIterations = most;
-    return root;
+    // Within a bracket as narrow as the tolerance the field is straight; a wider one has its root at an end.
+    V root = low - valueLow * ((high - low) / (valueHigh - valueLow));
+    root = hn::IfThenElse(hn::And(root >= low, root <= high), root, low + half * (high - low));
+    const V nearer = hn::IfThenElse(hn::Abs(valueLow) < hn::Abs(valueHigh), low, high);
+    return hn::IfThenElse(high - low > all(1.5f) * least, nearer, root);
   }
 
   // To the next event; drops the chords that every ray has left.
@@ -361,6 +369,9 @@ class Walk {
   Coefficients polynomial_;
 };
 
+// Of 1 - r^2 / R^2 near the end of a support.
+constexpr float kRoundingOfW = 1.2e-7f;
+
 // Normal, colour and id of hits.
 template <typename Kernel>
 void shade(Kernel kernel, const FieldTile& tile, const TileRays& rays, const Packet& p, V t, M hit, M inside,
@@ -371,16 +382,18 @@ void shade(Kernel kernel, const FieldTile& tile, const TileRays& rays, const Pac
   const V z = hn::IfThenElse(hit, p.direction.z * t, all(kFar));
   const float lowest = static_cast<float>(p.zStart) + hn::GetLane(hn::MinOfLanes(f, z));
   Vec3 normal{zero, zero, zero}, color{zero, zero, zero};
-  V shares = zero, largest = zero;
+  V shares = zero, largest = all(-1.0f);
   auto id = hn::Zero(u);
   for (const std::uint32_t index : tile.list) {
     const BallRecord& b = tile.records[index];
     if (b.front + tile.slack < lowest) break;
     const Point point = pointNear(b, rays, p);
     const Vec3 from = add(point.position, scale(p.direction, t - point.t));
-    const V w = all(1.0f) - dot(from, from) * all(b.inverseSupport2);
-    const M in = hn::And(hit, w > zero);
+    // At the lowest levels a surface lies where its ball ends: rounding must not leave it without one.
+    const V rounded = all(1.0f) - dot(from, from) * all(b.inverseSupport2);
+    const M in = hn::And(hit, rounded > all(-kRoundingOfW));
     if (hn::AllFalse(f, in)) continue;
+    const V w = hn::Max(rounded, all(kRoundingOfW));
     const V weight = hn::IfThenElseZero(in, kernel.slope(w) * all(b.coefficient * b.inverseSupport2));
     normal = add(normal, {hn::IfThenElseZero(in, from.x) * weight, hn::IfThenElseZero(in, from.y) * weight,
                           hn::IfThenElseZero(in, from.z) * weight});
@@ -396,8 +409,8 @@ void shade(Kernel kernel, const FieldTile& tile, const TileRays& rays, const Pac
   const auto bits = hn::RebindMask(u, hit);
   if (channels.id) hn::Store(hn::IfThenElseZero(bits, id), u, out.id + k);
   if (channels.normal) {
-    const V length = hn::Sqrt(dot(normal, normal));
-    const M none = hn::Not(length > zero);  // a critical point: towards the viewer
+    const V size = hn::Abs(normal.x) + hn::Abs(normal.y) + hn::Abs(normal.z);  // squares might underflow
+    const M none = hn::Not(size > zero);  // a critical point: towards the viewer
     normal = choose(inside, scale(normal, all(-1.0f)), normal);
     normal = choose(none, scale(p.direction, all(-1.0f)), normal);
     hn::Store(hn::IfThenElseZero(bits, encodeNormal(normal)), u, out.normal + k);
