@@ -26,6 +26,7 @@ constexpr ImageSize kSize{1024, 768};
 // As --style full.
 RenderSettings allEffects() {
   RenderSettings settings;
+  settings.quadrics = QuadricMethod::splat;  // the unit that the costs are given in
   settings.samples = 1;
   settings.shadows.mode = ShadowMode::soft;
   settings.occlusion.on = true;
