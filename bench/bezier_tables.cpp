@@ -7,10 +7,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
+#include <functional>
 #include <map>
 #include <random>
 
@@ -22,6 +24,12 @@
 
 namespace meniscus::bench {
 namespace {
+
+double wallMs(const std::function<void()>& call) {
+  const auto start = std::chrono::steady_clock::now();
+  call();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
 
 constexpr ImageSize kSmall{640, 480}, kLarge{1024, 768};
 
@@ -83,7 +91,7 @@ Run draw(const FieldScene& scene, ImageSize size, const Parameters& parameters, 
   const auto once = [&] {
     double cpu = 0;
     const double ms =
-        timeMs([&] { cpu = processorMs([&] { run.hits = renderer.renderHits(view, {}, settings); }); });
+        wallMs([&] { cpu = processorMs([&] { run.hits = renderer.renderHits(view, {}, settings); }); });
     times.push_back(ms);
     cpuTimes.push_back(cpu);
   };
@@ -156,7 +164,7 @@ void measureTimes(int repetitions, int largest) {
       ReferenceOptions options;
       options.grazing = false;
       double cpu = 0;
-      const double ms = timeMs([&] {
+      const double ms = wallMs([&] {
         cpu = processorMs(
             [&] { traceReference(scene.primitives->surfaces, scene.primitives->origin, view, options); });
       });
