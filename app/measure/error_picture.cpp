@@ -71,6 +71,17 @@ std::unordered_map<std::uint32_t, std::uint32_t> colorsOf(const Primitives& prim
   return colors;
 }
 
+// As if lit from the eye: 0 to 255.
+glm::dvec3 shadedAt(const HitImage& image, const std::unordered_map<std::uint32_t, std::uint32_t>& colors,
+                    std::size_t at) {
+  const auto found = colors.find(image.id[at]);
+  if (image.id[at] == 0 || found == colors.end()) return glm::dvec3(255.0);
+  const Color color = split(found->second);
+  const double facing = static_cast<double>(image.normal[at].z);
+  const double light = std::isfinite(facing) ? 0.25 + 0.75 * std::clamp(facing, 0.0, 1.0) : 0;
+  return light * glm::dvec3(color[0], color[1], color[2]);
+}
+
 /// Rows from the top, four bytes a pixel.
 void writePng(const std::filesystem::path& path, ImageSize size, const std::vector<std::byte>& pixels) {
   ImageFileOptions options;
@@ -107,15 +118,7 @@ void writeErrorPicture(const std::filesystem::path& path, const HitImage& image,
           const Wrong wrong = wrongAt(image, truth, at);
           if (worst < wrong) worst = wrong;
           ++count;
-          const auto found = colors.find(image.id[at]);
-          if (image.id[at] == 0 || found == colors.end()) {
-            sum += glm::dvec3(255.0);
-            continue;
-          }
-          const Color color = split(found->second);
-          const double facing = static_cast<double>(image.normal[at].z);
-          const double light = std::isfinite(facing) ? 0.25 + 0.75 * std::clamp(facing, 0.0, 1.0) : 0;
-          sum += light * glm::dvec3(color[0], color[1], color[2]);
+          sum += shadedAt(image, colors, at);
         }
       }
       const glm::dvec3 mean = sum / static_cast<double>(std::max(count, 1));
@@ -126,6 +129,20 @@ void writeErrorPicture(const std::filesystem::path& path, const HitImage& image,
     }
   }
   writePng(path, size, pixels);
+}
+
+void writeShaded(const std::filesystem::path& path, const HitImage& image, const Primitives& primitives) {
+  const auto colors = colorsOf(primitives);
+  const auto width = static_cast<std::size_t>(image.size.width);
+  std::vector<std::byte> pixels(image.id.size() * 4, std::byte{255});
+  for (std::size_t i = 0; i < image.id.size(); ++i) {
+    const std::size_t row = static_cast<std::size_t>(image.size.height) - 1 - i / width;
+    const glm::dvec3 color = shadedAt(image, colors, i);
+    for (int c = 0; c < 3; ++c)
+      pixels[4 * (row * width + i % width) + static_cast<std::size_t>(c)] =
+          static_cast<std::byte>(std::lround(color[c]));
+  }
+  writePng(path, image.size, pixels);
 }
 
 void writeGrazing(const std::filesystem::path& path, const ReferenceImage& truth) {

@@ -15,6 +15,10 @@ namespace meniscus::measure {
 void writeErrorPicture(const std::filesystem::path& path, const HitImage& image, const ReferenceImage& truth,
                        const Primitives& primitives);
 
+/// A PNG of the same size, lit from the eye: the same for the same distances, normals and ids, whoever found
+/// them.
+void writeShaded(const std::filesystem::path& path, const HitImage& image, const Primitives& primitives);
+
 /// Normal, distance and id as an OpenEXR file.
 void writeLayers(const std::filesystem::path& path, const HitImage& image);
 /// Grazing pixels white, the others black.

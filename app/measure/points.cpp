@@ -98,9 +98,11 @@ Row PointTables::passColumns() {
 }
 
 Row PointTables::detailColumns() {
-  return {"scene",      "view",           "width",      "height",       "method",   "parameter",
-          "value",      "repetitions",    "prepare_ms", "processor_ms", "compared", "grazing_disputes",
-          "ids_differ", "normal_max_deg", "picture",    "refused"};
+  return {"scene",           "view",           "width",       "height",
+          "method",          "parameter",      "value",       "repetitions",
+          "prepare_ms",      "processor_ms",   "compared",    "grazing_disputes",
+          "ids_differ",      "normal_max_deg", "picture_rms", "picture_psnr_db",
+          "picture_largest", "picture",        "refused"};
 }
 
 PointTables::PointTables(const OutputFolder& folder)
@@ -134,10 +136,14 @@ void PointTables::add(const PlannedGroup& group, const PlannedPoint& point, cons
   for (const PointResult::Pass& pass : result.passes)
     passes.push_back(withKey({pass.name, fmt::format("{}", pass.runs), numberText(median(pass.ms))}));
   passes_.append(passes);
+  Row seen(3);  // unknown
+  if (result.picture)
+    seen = {numberText(result.picture->rms), numberText(result.picture->psnr),
+            numberText(result.picture->largest)};
   details_.append({withKey({fmt::format("{}", result.ms.size()), numberText(median(result.prepareMs)),
                             numberText(median(result.processorMs)), whole(e.compared),
                             whole(e.grazingDisputes), whole(e.idsDiffer), numberText(e.largestNormalDeg),
-                            pictureName(point.number), result.refused})});
+                            seen[0], seen[1], seen[2], pictureName(point.number), result.refused})});
   Row row = {key[0], whole(result.atoms), key[1], key[2], key[3], key[4], key[5], key[6]};
   const double iterations =
       s.pixels > 0 ? static_cast<double>(s.iterations) / static_cast<double>(s.pixels) : 0;

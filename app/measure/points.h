@@ -1,11 +1,13 @@
 #pragma once
 // The points of surface methods: what is to be measured, and the tables that it goes to.
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "app/measure/csv.h"
 #include "app/measure/output_folder.h"
+#include "app/measure/picture_difference.h"
 #include "app/measure/sweep.h"
 #include "core/hit_errors.h"
 #include "render/render_stats.h"
@@ -35,6 +37,7 @@ struct PointResult {
   std::size_t atoms = 0;
   std::vector<double> ms, processorMs;
   HitErrors errors;
+  std::optional<PictureDifference> picture;  ///< as people see it, against the truth lit the same way
   SurfaceStats stats;
   std::uint64_t bytes = 0;
   std::vector<double> prepareMs;

@@ -76,7 +76,8 @@ class Report {
   }
   double wrong(std::size_t i) const { return points_.number(i, "missed") + points_.number(i, "false"); }
   double pixels(std::size_t i) const { return points_.number(i, "width") * points_.number(i, "height"); }
-  std::string pictureOf(std::size_t i) const;
+  std::size_t detailOf(std::size_t i) const;
+  std::string pictureOf(std::size_t i) const { return details_.text(detailOf(i), "picture"); }
   std::vector<Group> groups() const;
   PlotPoint plotPoint(std::size_t i, double x, double y) const;
   void header();
@@ -108,15 +109,16 @@ void Report::sectionHead(const char* id, const char* name, const std::string& te
   out_ += fmt::format("<section id=\"{}\"><h2>{}</h2><p>{}</p>\n", id, name, text);
 }
 
-// The rows of details.csv have the same keys.
-std::string Report::pictureOf(std::size_t i) const {
-  for (std::size_t d = 0; d < details_.size(); ++d) {
+// The row of details.csv with the same key.
+std::size_t Report::detailOf(std::size_t i) const {
+  std::size_t d = 0;
+  for (; d < details_.size(); ++d) {
     bool same = true;
     for (const char* key : {"scene", "view", "width", "height", "method", "parameter", "value"})
       same = same && details_.text(d, key) == points_.text(i, key);
-    if (same) return details_.text(d, "picture");
+    if (same) break;
   }
-  return "";
+  return d;
 }
 
 std::vector<Report::Group> Report::groups() const {
@@ -359,14 +361,17 @@ void Report::pictures() {
 void Report::pointTable() {
   if (points_.empty()) return;
   sectionHead("points", "All points",
-              "<a href=\"points.csv\">points.csv</a>; the number of a row is its line there. Times per pass: "
+              "<a href=\"points.csv\">points.csv</a>; the number of a row is its line there. PSNR and "
+              "largest: of the "
+              "picture lit from the eye, against the truth lit the same way. Times per pass: "
               "<a href=\"passes.csv\">passes.csv</a>; what else was counted: <a "
               "href=\"details.csv\">details.csv</a>.");
   out_ += "<div class=\"scroll\"><table><tr><th>line</th>";
   constexpr const char* kHeads[] = {
-      "scene",         "balls",      "view",  "size",     "method",        "setting", "ms",
-      "ms 95 %",       "missed",     "false", "grazing",  "relative RMS",  "p99 Å",   "max Å",
-      "normals RMS °", "iterations", "most",  "overflow", "not converged", "memory"};
+      "scene", "balls",    "view",          "size",    "method",           "setting",
+      "ms",    "ms 95 %",  "missed",        "false",   "grazing",          "relative RMS",
+      "p99 Å", "max Å",    "normals RMS °", "PSNR dB", "picture: largest", "iterations",
+      "most",  "overflow", "not converged", "memory"};
   for (std::size_t h = 0; h < std::size(kHeads); ++h)
     out_ +=
         fmt::format("<th{}>{}</th>", h == 0 || h == 2 || h == 4 || h == 5 ? " class=\"t\"" : "", kHeads[h]);
@@ -381,9 +386,11 @@ void Report::pointTable() {
         cell(escaped(setting(i)), "t");
     for (const char* column : {"ms_median", "ms_p95"}) out_ += cell(shortNumber(points_.number(i, column)));
     for (const char* column : {"missed", "false", "grazing"}) out_ += cell(points_.text(i, column));
-    for (const char* column :
-         {"rms_relative", "p99_angstrom", "max_angstrom", "normal_rms_deg", "iterations_mean"})
+    for (const char* column : {"rms_relative", "p99_angstrom", "max_angstrom", "normal_rms_deg"})
       out_ += cell(shortNumber(points_.number(i, column)));
+    for (const char* column : {"picture_psnr_db", "picture_largest"})
+      out_ += cell(shortNumber(details_.number(detailOf(i), column)));
+    out_ += cell(shortNumber(points_.number(i, "iterations_mean")));
     for (const char* column : {"iterations_max", "overflow", "not_converged"})
       out_ += cell(points_.text(i, column));
     out_ += cell(bytesText(points_.number(i, "bytes"))) + "</tr>\n";

@@ -81,7 +81,15 @@ void SurfaceRun::loadScene(const PlannedGroup& group) {
 void SurfaceRun::judge(const PlannedGroup& group, Pending& pending, const HitImage& image) {
   pending.result.errors = compareHits(image, truth_);
   const std::string name = pictureName(pending.point->number);
-  if (sweep_.images) writeErrorPicture(folder_ / ("images/" + name + ".png"), image, truth_, *primitives_);
+  if (sweep_.images) {
+    writeErrorPicture(folder_ / ("images/" + name + ".png"), image, truth_, *primitives_);
+    const std::filesystem::path drawn = folder_ / "images/drawn.png", right = folder_ / "images/right.png";
+    writeShaded(drawn, image, *primitives_);
+    writeShaded(right, truth_.hits, *primitives_);
+    pending.result.picture = comparePictures(drawn, right);
+    std::filesystem::remove(drawn);
+    std::filesystem::remove(right);
+  }
   if (!sweep_.layers) return;
   writeLayers(folder_ / ("layers/" + name + ".exr"), image);
   const PlannedPoint& first = group.points.front();

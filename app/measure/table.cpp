@@ -23,7 +23,7 @@ const std::string& Table::text(std::size_t i, std::string_view column) const {
   static const std::string kNothing;
   const auto found = std::find(header_.begin(), header_.end(), column);
   const auto at = static_cast<std::size_t>(found - header_.begin());
-  return found != header_.end() && at < rows_[i].size() ? rows_[i][at] : kNothing;
+  return found != header_.end() && i < rows_.size() && at < rows_[i].size() ? rows_[i][at] : kNothing;
 }
 
 double Table::number(std::size_t i, std::string_view column) const {

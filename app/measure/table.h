@@ -18,7 +18,7 @@ class Table {
   std::size_t size() const { return rows_.size(); }
   bool empty() const { return rows_.empty(); }
   const Row& row(std::size_t i) const { return rows_[i]; }
-  /// "" if there is no such column.
+  /// "" if there is no such row or column.
   const std::string& text(std::size_t i, std::string_view column) const;
   /// NaN if it is not a number.
   double number(std::size_t i, std::string_view column) const;

@@ -1,6 +1,8 @@
 // `meniscus measure`: what it writes, that its errors are right, that it goes on where it was interrupted,
 // and what it refuses.
 
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imageio.h>
 #include <fcntl.h>
 #include <sys/file.h>
@@ -9,8 +11,10 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
+#include <cstdlib>
 #include <set>
 
+#include "app/measure/picture_difference.h"
 #include "app/measure/points.h"
 #include "app/measure/sweep.h"
 #include "app/measure/table.h"
@@ -57,6 +61,16 @@ std::map<std::string, std::vector<float>> readChannels(const std::filesystem::pa
   return out;
 }
 
+/// A square of one color in the middle of black.
+void writeSquare(const std::filesystem::path& path, float color, int size) {
+  OIIO::ImageBuf picture(OIIO::ImageSpec(64, 48, 3, OIIO::TypeDesc::UINT8));
+  OIIO::ImageBufAlgo::zero(picture);
+  const float value[] = {color, color, color};
+  const int low = 24 - size / 2;
+  OIIO::ImageBufAlgo::fill(picture, value, OIIO::ROI(low, low + size, low, low + size));
+  ASSERT_TRUE(picture.write(path.string())) << picture.geterror();
+}
+
 class Measure : public CliTest {
  protected:
   ProcessResult measureSweep() const { return run({"measure", "sweep.json", "-o", "out", "-q"}); }
@@ -88,6 +102,10 @@ void Measure::expectTablesAndReport() const {
     EXPECT_GT(points.number(i, "ms_median"), 0);
     EXPECT_GE(points.number(i, "ms_p95"), points.number(i, "ms_median"));
     EXPECT_GT(points.number(i, "bytes"), 0);
+    // As people see it: a picture that is right but for rounding.
+    EXPECT_GE(details.number(i, "picture_rms"), 0);
+    EXPECT_GT(details.number(i, "picture_psnr_db"), 20);
+    EXPECT_LE(details.number(i, "picture_largest"), 1);
     const std::string picture = details.text(i, "picture");
     EXPECT_EQ(readPicture(out("images/" + picture + ".png")).width, 2 * 96);
     // Every figure leads to its row, every point to its picture.
@@ -237,6 +255,26 @@ TEST_F(Measure, twoProcessesDoNotMeasureIntoOneFolder) {
   ASSERT_EQ(flock(other, LOCK_EX), 0);
   expectError(run({"measure", "sweep.json", "-o", "out"}), ExitCode::badInput, {"out", "another process"});
   close(other);
+}
+
+TEST_F(Measure, picturesAreComparedAsPeopleSeeThem) {
+  const std::filesystem::path a = folder_ / "a.png", b = folder_ / "b.png";
+  writeSquare(a, 200 / 255.0f, 16);
+  writeSquare(b, 150 / 255.0f, 16);
+  const auto same = measure::comparePictures(a, a), other = measure::comparePictures(a, b);
+  ASSERT_TRUE(same && other) << "idiff is missing";
+  EXPECT_EQ(same->rms, 0);
+  EXPECT_TRUE(std::isinf(same->psnr));
+  EXPECT_EQ(same->largest, 0);
+  // 50 of 255 in a twelfth of the pixels.
+  EXPECT_NEAR(other->rms, 50 / 255.0 * std::sqrt(1 / 12.0), 1e-4);
+  EXPECT_NEAR(other->psnr, -20 * std::log10(other->rms), 0.1);
+  EXPECT_NEAR(other->largest, 50 / 255.0, 1e-4);
+  EXPECT_THROW(measure::comparePictures(a, folder_ / "none.png"), InputError);
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", folder_.path().c_str(), 1);
+  EXPECT_FALSE(measure::comparePictures(a, b).has_value());
+  setenv("PATH", path.c_str(), 1);
 }
 
 TEST_F(Measure, withoutGraphicsItSaysSo) {
