@@ -18,6 +18,7 @@
 #include "app/measure/stability.h"
 #include "app/measure/surface_run.h"
 #include "app/measure/sweep.h"
+#include "app/option_values.h"
 #include "app/progress.h"
 #include "core/error.h"
 #include "render/gl/context.h"
@@ -47,6 +48,7 @@ Machine thisMachine(const Context& context) {
   Machine machine;
   machine.version = version();
   machine.commit = commit();
+  machine.backend = context.name();
   machine.device = context.rendererName();
   machine.driver = context.driverVersion();
   machine.cpu = processorName();
@@ -55,19 +57,20 @@ Machine thisMachine(const Context& context) {
 }
 
 struct MeasureOptions {
-  std::string sweep, folder, drawCells;
+  std::string sweep, folder, drawCells, backend = "auto";
   bool quiet = false;
 };
 
 int runSweep(const MeasureOptions& options) {
+  const Backend backend = parseBackend("--backend", options.backend);
   const Sweep sweep = loadSweep(options.sweep);
   const OutputFolder folder(options.folder, sweep, !options.drawCells.empty());
   if (!options.drawCells.empty()) {
     if (!sweep.stability) throw UsageError("--draw-cells: the sweep has no stability scenes");
-    drawCells(sweep, folder, options.drawCells);
+    drawCells(sweep, folder, options.drawCells, backend);
     return 0;
   }
-  const std::unique_ptr<Context> context = Context::create(Backend::automatic);
+  const std::unique_ptr<Context> context = Context::create(backend);
   folder.describe(sweep, thisMachine(*context));
   Progress progress(!options.quiet, true);
   progress.start(sweep.name);
@@ -89,7 +92,7 @@ int runSweep(const MeasureOptions& options) {
   }
   if (sweep.stability) {
     progress.start("stability");
-    measureStability(sweep, options.sweep, folder, progress);
+    measureStability(sweep, {"--backend", options.backend, options.sweep}, folder, progress);
   }
   progress.clear();
   writeReport(sweep, folder);
@@ -106,6 +109,9 @@ int runMeasure(const std::vector<std::string>& arguments) {
   app->add_option("-o,--output", options.folder, "Folder for the tables and the report; made if missing")
       ->type_name("DIR")
       ->group("Output");
+  app->add_option("--backend", options.backend, "How to reach OpenGL [auto]; see 'meniscus doctor'")
+      ->type_name("auto|egl|osmesa")
+      ->group("Other");
   app->add_flag("-q,--quiet", options.quiet, "Say nothing but errors")->group("Output");
   // A process of the stability suite's own; not for people.
   app->add_option("--draw-cells", options.drawCells)->group("");

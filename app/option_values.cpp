@@ -303,4 +303,9 @@ std::size_t parseWord(std::string_view option, std::string_view value,
   return static_cast<std::size_t>(found - words.begin());
 }
 
+Backend parseBackend(std::string_view option, std::string_view value) {
+  return parseChoice<Backend>(
+      option, value, {{"auto", Backend::automatic}, {"egl", Backend::egl}, {"osmesa", Backend::osmesa}});
+}
+
 }  // namespace meniscus

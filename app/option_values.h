@@ -16,6 +16,7 @@
 #include "core/render_settings.h"
 #include "core/scene.h"
 #include "io/structure_reader.h"
+#include "render/gl/context.h"
 
 namespace meniscus {
 
@@ -96,5 +97,8 @@ Value parseChoice(std::string_view option, std::string_view value, const Choice<
   for (std::size_t i = 0; i < N; ++i) words[i] = choices[i].word;
   return choices[parseWord(option, value, words)].value;
 }
+
+/// auto, egl or osmesa.
+Backend parseBackend(std::string_view option, std::string_view value);
 
 }  // namespace meniscus

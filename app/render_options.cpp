@@ -333,10 +333,7 @@ void addStructureOptions(CLI::App& app, RenderOptions& o) {
 void addOtherOptions(CLI::App& app, RenderOptions& o) {
   OptionGroup group(app, "Other");
   group.value("--backend", "auto|egl|osmesa", "How to reach OpenGL [auto]; see 'meniscus doctor'",
-              [&o](auto& n, auto& v) {
-                o.backend = parseChoice<Backend>(
-                    n, v, {{"auto", Backend::automatic}, {"egl", Backend::egl}, {"osmesa", Backend::osmesa}});
-              });
+              [&o](auto& n, auto& v) { o.backend = parseBackend(n, v); });
   group.value("--quadrics", "splat|tiles|auto",
               "Spheres, cylinders and ellipsoids drawn by the GPU, a\n"
               "rectangle each (splat), or by the processor (tiles) [auto:\n"

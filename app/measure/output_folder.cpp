@@ -71,6 +71,7 @@ void OutputFolder::describe(const Sweep& sweep, const Machine& machine) const {
   Json json;
   json["version"] = machine.version;
   json["commit"] = machine.commit;
+  json["backend"] = machine.backend;
   json["device"] = machine.device;
   json["driver"] = machine.driver;
   json["cpu"] = machine.cpu;
@@ -84,7 +85,7 @@ void OutputFolder::describe(const Sweep& sweep, const Machine& machine) const {
   json["sweep"] = Json::parse(sweep.text);
   const Json old = readSidecar(path_);
   if (old.is_object()) {
-    for (const char* key : {"version", "commit", "device", "driver", "cpu"})
+    for (const char* key : {"version", "commit", "backend", "device", "driver", "cpu"})
       if (old.contains(key) && old[key] != json[key])
         throw InputError(fmt::format("'{}' was measured with another {} ({}); give -o another folder",
                                      path_.string(), key, old[key].dump()));

@@ -11,7 +11,7 @@ namespace meniscus::measure {
 
 /// Of the machine and the program, for the sidecar.
 struct Machine {
-  std::string version, commit, device, driver, cpu;
+  std::string version, commit, backend, device, driver, cpu;
   int threads = 0;
 };
 

@@ -25,7 +25,6 @@
 #include "core/error.h"
 #include "core/generated_scenes.h"
 #include "io/output_file.h"
-#include "render/gl/context.h"
 #include "render/renderer.h"
 #include "render/surface_method.h"
 
@@ -126,13 +125,14 @@ Cell drawCell(Renderer& renderer, const std::string& method, const StabilityScen
 /// A process that draws the cells of one method.
 class Worker {
  public:
-  Worker(const std::string& sweepArgument, const OutputFolder& folder, const std::string& method)
+  Worker(const std::vector<std::string>& given, const OutputFolder& folder, const std::string& method)
       : current_(folder / "cells.current") {
     std::error_code error;
     fs::remove(current_, error);
-    std::string program = "/proc/self/exe", log = (folder / "cells.log").string(),
-                path = folder.path().string(), sweep = sweepArgument, name = method;
-    std::string words[] = {"meniscus", "measure", "--draw-cells", name, "-o", path, sweep};
+    const std::string program = "/proc/self/exe", log = (folder / "cells.log").string();
+    std::vector<std::string> words = {"meniscus", "measure", "--draw-cells",
+                                      method,     "-o",      folder.path().string()};
+    words.insert(words.end(), given.begin(), given.end());
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
@@ -184,9 +184,9 @@ class Worker {
 
 class StabilityRun {
  public:
-  StabilityRun(const Sweep& sweep, const std::string& argument, const OutputFolder& folder,
+  StabilityRun(const Sweep& sweep, const std::vector<std::string>& arguments, const OutputFolder& folder,
                Progress& progress)
-      : sweep_(sweep), spec_(*sweep.stability), argument_(argument), folder_(folder), progress_(progress) {}
+      : sweep_(sweep), spec_(*sweep.stability), arguments_(arguments), folder_(folder), progress_(progress) {}
 
   void run() {
     const std::vector<std::string> methods = stabilityMethods();
@@ -220,7 +220,7 @@ class StabilityRun {
   }
 
   void drawSome(const std::string& method, double before) {
-    Worker worker(argument_, folder_, method);
+    Worker worker(arguments_, folder_, method);
     std::string current;
     Clock::time_point since = Clock::now();
     const double kinds = static_cast<double>(stabilityMethods().size());
@@ -294,7 +294,7 @@ class StabilityRun {
 
   const Sweep& sweep_;
   const StabilitySpec& spec_;
-  const std::string& argument_;
+  const std::vector<std::string>& arguments_;
   const OutputFolder& folder_;
   Progress& progress_;
 };
@@ -350,15 +350,15 @@ Cell judgeCell(const HitImage& image, const ReferenceImage& truth, double detail
   return cell;
 }
 
-void measureStability(const Sweep& sweep, const std::string& sweepArgument, const OutputFolder& folder,
-                      Progress& progress) {
-  StabilityRun(sweep, sweepArgument, folder, progress).run();
+void measureStability(const Sweep& sweep, const std::vector<std::string>& arguments,
+                      const OutputFolder& folder, Progress& progress) {
+  StabilityRun(sweep, arguments, folder, progress).run();
 }
 
-void drawCells(const Sweep& sweep, const OutputFolder& folder, const std::string& method) {
+void drawCells(const Sweep& sweep, const OutputFolder& folder, const std::string& method, Backend backend) {
   // Whoever started it is killed: nobody would wait for it, and another run would draw the same cells.
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  const auto context = Context::create(Backend::automatic);
+  const auto context = Context::create(backend);
   Renderer renderer;
   GrowingCsv cells(folder / "cells.csv", cellColumns());
   for (const std::string& name : sweep.stability->scenes) {

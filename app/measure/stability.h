@@ -14,6 +14,7 @@
 #include "core/hit_image.h"
 #include "core/reference_tracer.h"
 #include "core/render_settings.h"
+#include "render/gl/context.h"
 
 namespace meniscus::measure {
 
@@ -47,12 +48,12 @@ std::vector<std::string> stabilityMethods();
 
 Row cellColumns();
 
-/// All cells that are not there yet, into cells.csv, and stability.json with all of them. `sweepArgument`:
-/// what the command was given, for the processes that draw.
-void measureStability(const Sweep& sweep, const std::string& sweepArgument, const OutputFolder& folder,
-                      Progress& progress);
+/// All cells that are not there yet, into cells.csv, and stability.json with all of them. `arguments`: the
+/// sweep and the options that the command was given, for the processes that draw.
+void measureStability(const Sweep& sweep, const std::vector<std::string>& arguments,
+                      const OutputFolder& folder, Progress& progress);
 
 /// The other process: draws the cells of one method, in order. Makes a context of its own.
-void drawCells(const Sweep& sweep, const OutputFolder& folder, const std::string& method);
+void drawCells(const Sweep& sweep, const OutputFolder& folder, const std::string& method, Backend backend);
 
 }  // namespace meniscus::measure

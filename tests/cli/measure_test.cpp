@@ -16,6 +16,7 @@
 
 #include "app/measure/picture_difference.h"
 #include "app/measure/points.h"
+#include "app/measure/stability.h"
 #include "app/measure/sweep.h"
 #include "app/measure/table.h"
 #include "render/surface_method.h"
@@ -244,6 +245,8 @@ TEST_F(Measure, badSweepsAreRefusedBeforeAnythingRuns) {
   expectError(run({"measure", "missing.json", "-o", "out"}), ExitCode::badInput, {"missing.json"});
   expectError(run({"measure", "quik", "-o", "out"}), ExitCode::badUsage, {"quik", "quick"});
   expectError(run({"measure", "quick"}), ExitCode::badUsage, {"--output"});
+  expectError(run({"measure", "quick", "-o", "out", "--backend", "glx"}), ExitCode::badUsage,
+              {"--backend", "glx", "osmesa"});
   expectError(run({"measure"}), ExitCode::badUsage, {"sweep"});
   EXPECT_EQ(folder_.names(), std::vector<std::string>{"bad.json"});
 }
@@ -275,6 +278,18 @@ TEST_F(Measure, picturesAreComparedAsPeopleSeeThem) {
   setenv("PATH", folder_.path().c_str(), 1);
   EXPECT_FALSE(measure::comparePictures(a, b).has_value());
   setenv("PATH", path.c_str(), 1);
+}
+
+TEST_F(Measure, theWayToOpenGlCanBeChosen) {
+  writeFile(folder_ / "sweep.json", R"({"sizes": ["32x24"], "repetitions": 1, "images": false,
+    "scenes": [{"balls": 5}], "methods": [{"method": "tiles"}],
+    "stability": {"size": "16x12", "scenes": ["plain"]}})");
+  expectSuccess(run({"measure", "sweep.json", "-o", "out", "--backend", "osmesa"}));
+  EXPECT_EQ(nlohmann::json::parse(readFile(out("sidecar.json")))["backend"], "OSMesa");
+  const Table cells(out("cells.csv"));
+  EXPECT_EQ(cells.size(), measure::stabilityMethods().size());
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    EXPECT_NE(cells.text(i, "status"), "failed") << cells.text(i, "message");
 }
 
 TEST_F(Measure, withoutGraphicsItSaysSo) {
