@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "tests/gpu/surface_judge.h"
 
@@ -14,29 +13,12 @@ using test::options;
 
 class BezierExtremes : public test::SurfaceTest {};
 
-MetaballField ofManyScales(unsigned seed) {
-  test::Random random(seed);
-  MetaballField field;
-  for (unsigned i = 1; i <= 120; ++i) {
-    const double support = i == 1 ? 1e3 : i == 2 ? 1e-3 : random.logUniform(1e-3, 1e3);
-    // Around the smallest ball, at distances of the size of each.
-    const glm::dvec3 at = i == 2 ? glm::dvec3(0) : random.direction() * support * random.uniform(0.5, 1.5);
-    field.balls.push_back({glm::vec3(at), static_cast<float>(support), 1.0f, 0x808080, i});
-  }
-  field.level = 0.9;
-  return field;
-}
-
 // As a whole, and at every magnification down to the smallest ball.
 TEST_F(BezierExtremes, SupportsFromAThousandthToAThousand) {
-  const test::SurfaceScene scene(ofManyScales(21));
+  const test::SurfaceScene scene = test::manyScales();
   for (const double radius : {1000.0, 100.0, 10.0, 1.0, 0.1, 0.01, 0.001}) {
-    Camera camera;
-    camera.distance = 4 * radius;
-    camera.fovY = 0.6;
-    const View view = makeView(camera, {64, 48}, scene.primitives->bounds());
     SCOPED_TRACE(radius);
-    expectExact(judge(scene, view, options(), "radius" + std::to_string(radius)));
+    expectExact(judge(scene, viewOfScale(scene, radius), options(), "radius" + std::to_string(radius)));
   }
   expectExact(judge(scene, viewOf(scene, {64, 48}, Projection::orthographic), options(), "orthographic"));
 }
@@ -49,24 +31,14 @@ TEST_F(BezierExtremes, ShiftedByAMillion) {
 
 TEST_F(BezierExtremes, CameraAtTenThousand) {
   const test::SurfaceScene scene = test::randomScene(150, 3);
-  View view = viewOf(scene, {96, 72});
-  const double before = view.distance;
-  view.distance = 1e4;
-  view.pixelSize *= before / view.distance;
-  expectExact(judge(scene, view, options()));
+  expectExact(judge(scene, viewFromAfar(scene, {96, 72}), options()));
 }
 
 TEST_F(BezierExtremes, FieldsOfViewOfOneAndOf150Degrees) {
   const test::SurfaceScene scene = test::randomScene(150, 3);
-  const double radius = scene.primitives->bounds().radius;
   for (const double degrees : {1.0, 150.0}) {
-    Camera camera;
-    camera.target = scene.primitives->origin;
-    camera.fovY = degrees * 3.14159265358979 / 180;
-    camera.distance = degrees < 90 ? radius / std::sin(camera.fovY / 2) : 0.9 * radius;
-    camera.orientation = glm::normalize(glm::dquat(0.9, 0.2, -0.3, 0.1));
     SCOPED_TRACE(degrees);
-    expectExact(judge(scene, makeView(camera, {96, 72}, scene.primitives->bounds()), options(),
+    expectExact(judge(scene, viewOfAngle(scene, degrees), options(),
                       "fov" + std::to_string(static_cast<int>(degrees))));
   }
 }
@@ -89,27 +61,17 @@ TEST_F(BezierExtremes, LevelNearZero) {
 TEST_F(BezierExtremes, LevelNearTheMaximum) {
   for (const unsigned balls : {1u, 2u}) {
     for (const double below : {1e-2, 1e-3, 1e-4}) {
-      MetaballField field;
-      field.level = balls * (1 - below);
-      for (unsigned i = 1; i <= balls; ++i) field.balls.push_back({{3, 1, -2}, 2.0f, 1.0f, 0x808080, i});
-      const test::SurfaceScene scene(field);
-      Camera camera;
-      camera.target = {3, 1, -2};
-      camera.distance = 10;
-      camera.fovY = 0.6 * std::sqrt(below);  // what is left fills the picture
       SCOPED_TRACE(below);
-      expectExact(judge(scene, makeView(camera, {64, 48}, scene.primitives->bounds()), options(),
-                        "balls" + std::to_string(balls) + "_below" + std::to_string(below)));
+      const auto [scene, view] = test::nearMaximum(balls, below);
+      expectExact(
+          judge(scene, view, options(), "balls" + std::to_string(balls) + "_below" + std::to_string(below)));
     }
   }
 }
 
 TEST_F(BezierExtremes, NothingIsDrawnAboveEveryMaximum) {
   for (const unsigned balls : {1u, 2u, 40u}) {
-    MetaballField field;
-    field.level = balls * (1 + 1e-5);
-    for (unsigned i = 1; i <= balls; ++i) field.balls.push_back({{3, 1, -2}, 2.0f, 1.0f, 0x808080, i});
-    const test::SurfaceScene scene(field);
+    const test::SurfaceScene scene = test::nearMaximum(balls, -1e-5).scene;
     const HitImage image = draw(scene, viewOf(scene, {63, 47}), options());
     EXPECT_EQ(std::count(image.id.begin(), image.id.end(), 0u), std::ptrdiff_t{63} * 47);
   }
@@ -121,21 +83,7 @@ TEST_F(BezierExtremes, NothingIsDrawnAboveEveryMaximum) {
 
 // Touching without crossing is no hit, and is never looped on.
 TEST_F(BezierExtremes, TangentRays) {
-  MetaballField field;
-  field.level = 1;  // reached at the centres alone
-  for (unsigned i = 0; i < 9; ++i)
-    field.balls.push_back({{3 * static_cast<float>(i % 3) - 3, 3 * static_cast<float>(i / 3) - 3, 0},
-                           1.0f,
-                           1.0f,
-                           0x808080,
-                           i + 1});
-  field.balls.push_back({{0, 0, 3}, 1.0f, 0.5f, 0x808080, 10});
-  field.balls.push_back({{0, 0, 3}, 1.0f, 0.5f, 0x808080, 11});
-  const test::SurfaceScene scene(field);
-  View view = test::alongZ(0, 0, 10);
-  view.size = {15, 15};
-  view.pixelSize = 0.5;
-  view.center = {7.5, 7.5};
+  const auto [scene, view] = test::tangentRays();
   const HitImage image = draw(scene, view, options());
   // Of two balls' sum, which is the level to the last bit, rounding decides.
   for (int i = 0; i < 15 * 15; ++i) {

@@ -3,13 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <filesystem>
+#include <limits>
 
 #include "core/error.h"
-#include "io/structure_reader.h"
 #include "tests/gpu/surface_judge.h"
-#include "tests/support/scenes.h"
+#include "tests/support/exact_field.h"
 
 namespace meniscus {
 namespace {
@@ -30,25 +28,13 @@ TEST_F(Bezier, RandomBallsOfThePaper) {
 }
 
 TEST_F(Bezier, EveryMolecule) {
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(MENISCUS_MOLECULES))
-    if (entry.path().extension() != ".md") files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
+  const auto files = test::moleculeFiles();
   EXPECT_GE(files.size(), 15u);
   for (const auto& file : files) {
-    SCOPED_TRACE(file.filename().string());
-    Logger logger;
-    StructureOptions read;
-    read.waters = Waters::automatic;
-    Molecule molecule = readStructure(file, read, logger).models.front();
-    SceneObject object;
-    object.molecule = std::make_shared<const Molecule>(std::move(molecule));
-    object.placements = placeOnce(*object.molecule);
-    object.representation = Representation::surface;
-    Scene all;
-    all.objects = {object};
-    test::SurfaceScene scene{std::make_shared<Primitives>(buildPrimitives(all))};
-    expectExact(judge(scene, viewOf(scene, {96, 72}), options(), file.filename().string()));
+    const std::string name = file.filename().string();
+    SCOPED_TRACE(name);
+    const test::SurfaceScene scene = test::moleculeScene(file);
+    expectExact(judge(scene, viewOf(scene, {96, 72}), options(), name));
   }
 }
 
@@ -94,11 +80,8 @@ TEST_F(Bezier, ShortListsAreRepairedAndCounted) {
   EXPECT_EQ(detail("repairs"), 0);
 }
 
-// Figure 9 (a) and (b).
 TEST_F(Bezier, TwoHundredCoincidentBalls) {
-  MetaballField field;
-  for (unsigned i = 1; i <= 200; ++i) field.balls.push_back({{0.25f, -0.5f, 1}, 2.0f, 0.01f, 0x808080, i});
-  const test::SurfaceScene scene(field);
+  const test::SurfaceScene scene = test::coincidentBalls();
   for (const Projection projection : kBoth) {
     expectExact(judge(scene, viewOf(scene, {24, 18}, projection), options()));
     EXPECT_GT(stats.overflow, 50u);
@@ -106,41 +89,17 @@ TEST_F(Bezier, TwoHundredCoincidentBalls) {
   }
 }
 
-// Figure 9 (c): the surface lies behind hundreds of others that do not reach the level.
 TEST_F(Bezier, AThousandBallsAlongOneRay) {
-  MetaballField field;
-  for (unsigned i = 0; i < 1000; ++i) {
-    const float z = 60 - 0.12f * static_cast<float>(i);
-    const float q = i < 990 ? 0.005f : 1.0f;
-    field.balls.push_back({{0.01f * static_cast<float>(i % 7), 0, z}, 2.0f, q, 0x808080, i + 1});
-  }
-  const test::SurfaceScene scene(field);
-  View view = test::alongZ(0, 0, 70);
-  view.size = {12, 9};
-  view.pixelSize = 0.4;
-  view.center = {6, 4.5};
+  const auto [scene, view] = test::ballsAlongOneRay();
   expectExact(judge(scene, view, options()));
   EXPECT_GT(detail("events peeled"), 1900.0);
 }
 
-// Thousands of events at exactly the same places.
 TEST_F(Bezier, ALatticeSeenAlongAnAxis) {
-  MetaballField field;
-  for (unsigned i = 0; i < 512; ++i) {
-    const glm::vec3 at(i % 8, i / 8 % 8, i / 64);
-    field.balls.push_back({(at - 3.5f) * 1.5f, 2.5f, 0.4f, 0x808080, i + 1});
-  }
-  const test::SurfaceScene scene(field);
-  View view = test::alongZ(0, 0, 20);
-  view.size = {64, 48};
-  view.pixelSize = 0.375;  // every fourth ray meets a row of centres
-  view.center = {32.5, 24.5};
+  const auto [scene, view] = test::latticeAlongAxis();
   expectExact(judge(scene, view, options()));
   expectExact(judge(scene, view, options({{"culling", 0}})));
-  Camera camera;  // and perspective, down the same axis
-  camera.distance = 40;
-  camera.fovY = 0.5;
-  expectExact(judge(scene, makeView(camera, {64, 48}, scene.primitives->bounds()), options()));
+  expectExact(judge(scene, latticeInPerspective(scene), options()));
 }
 
 TEST_F(Bezier, NegativeBallsHollowTheSurface) {
@@ -150,50 +109,29 @@ TEST_F(Bezier, NegativeBallsHollowTheSurface) {
       expectExact(judge(scene, viewOf(scene, {80, 60}, projection), options()));
     EXPECT_EQ(detail("balls left after culling"), detail("balls in view")) << "cores hide nothing";
   }
-  // A cavity in a ball, seen from within it.
-  MetaballField cavity;
-  cavity.balls = {{{0, 0, 0}, 6.0f, 1.0f, 0xFF0000, 1}, {{0.5f, 0, 0}, 2.0f, -2.0f, 0x00FF00, 2}};
-  const test::SurfaceScene scene(cavity);
-  Camera camera;
-  camera.target = {0.5, 0, 0};
-  camera.distance = 0.3;
-  camera.fovY = 1.5;
-  const HitErrors errors = judge(scene, makeView(camera, {64, 48}, scene.primitives->bounds()), options());
+  const auto [scene, view] = test::insideOfCavity();
+  const HitErrors errors = judge(scene, view, options());
   expectExact(errors);
   EXPECT_EQ(errors.compared + errors.grazing, 64u * 48u);
 }
 
 TEST_F(Bezier, CameraInsideBallsAndInsideTheSurface) {
   const test::SurfaceScene scene = test::randomScene(200, 5);
-  test::Random random(9);
-  for (int i = 0; i < 6; ++i) {
-    Camera camera;
-    camera.projection = i == 5 ? Projection::orthographic : Projection::perspective;
-    camera.target = scene.primitives->origin + random.inBox(4);
-    camera.orientation = random.rotation();
-    camera.distance = i == 0 ? 1e-3 : random.uniform(0.1, 9);
-    camera.fovY = random.uniform(0.5, 1.6);
-    View view = makeView(camera, {64, 48}, scene.primitives->bounds());
-    if (i >= 4) view.nearZ = random.uniform(-3, 3);  // cut open by the near plane
-    view.farZ = std::min(view.farZ, view.nearZ - 1);
+  const std::vector<View> views = viewsFromInside(scene);
+  for (std::size_t i = 0; i < views.size(); ++i) {
     SCOPED_TRACE(i);
-    expectExact(judge(scene, view, options(), "inside" + std::to_string(i)));
+    expectExact(judge(scene, views[i], options(), "inside" + std::to_string(i)));
   }
 }
 
 // A scene in which spheres and two surfaces hide each other.
 TEST_F(Bezier, SpheresAndSurfacesHideEachOther) {
-  test::SurfaceScene scene = test::randomScene(60, 12);
-  scene.primitives->surfaces.push_back(test::randomField(kSextic, 0.4, 40, 6, 0, 13));
-  for (Metaball& ball : scene.primitives->surfaces[1].balls) ball.id += 60;
+  const test::SurfaceScene scene = test::twoSurfaces();
   const View view = viewOf(scene, {96, 72});
   const HitImage surfaces = draw(scene, view, options());
   auto spheres = std::make_shared<Primitives>();
   spheres->origin = scene.primitives->origin;
-  test::Random random(14);
-  for (unsigned i = 0; i < 30; ++i)
-    spheres->spheres.push_back(
-        {glm::vec3(random.inBox(6)), static_cast<float>(random.uniform(0.5, 2)), 0xFFFFFF, 101 + i});
+  spheres->spheres = test::spheresAmongSurfaces();
   const HitImage alone = draw({spheres}, view, options());
   scene.primitives->spheres = spheres->spheres;
   const HitImage both = draw(scene, view, options());

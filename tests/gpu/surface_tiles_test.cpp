@@ -2,10 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
-#include "core/assembly.h"
-#include "io/structure_reader.h"
 #include "render/surface_method.h"
 #include "tests/gpu/surface_judge.h"
 
@@ -26,85 +22,42 @@ TEST_F(SurfaceTiles, RandomBalls) {
 }
 
 TEST_F(SurfaceTiles, AMolecule) {
-  Logger logger;
-  StructureOptions read;
-  read.waters = Waters::automatic;
-  Molecule molecule = readStructure(MENISCUS_MOLECULES "/2hhb.pdb.gz", read, logger).models.front();
-  SceneObject object;
-  object.molecule = std::make_shared<const Molecule>(std::move(molecule));
-  object.placements = placeOnce(*object.molecule);
-  object.representation = Representation::surface;
-  Scene all;
-  all.objects = {object};
-  test::SurfaceScene scene{std::make_shared<Primitives>(buildPrimitives(all))};
+  const test::SurfaceScene scene = test::moleculeScene(MENISCUS_MOLECULES "/2hhb.pdb.gz");
   expectExact(judge(scene, viewOf(scene, {96, 72}), kTiles));
 }
 
 TEST_F(SurfaceTiles, TwoHundredCoincidentBalls) {
-  MetaballField field;
-  for (unsigned i = 1; i <= 200; ++i) field.balls.push_back({{0.25f, -0.5f, 1}, 2.0f, 0.01f, 0x808080, i});
-  const test::SurfaceScene scene(field);
+  const test::SurfaceScene scene = test::coincidentBalls();
   for (const Projection projection : kBoth)
     expectExact(judge(scene, viewOf(scene, {24, 18}, projection), kTiles));
 }
 
-// The surface lies behind hundreds of others that do not reach the level.
 TEST_F(SurfaceTiles, AThousandBallsAlongOneRay) {
-  MetaballField field;
-  for (unsigned i = 0; i < 1000; ++i) {
-    const float z = 60 - 0.12f * static_cast<float>(i);
-    field.balls.push_back(
-        {{0.01f * static_cast<float>(i % 7), 0, z}, 2.0f, i < 990 ? 0.005f : 1.0f, 0x808080, i + 1});
-  }
-  View view = test::alongZ(0, 0, 70);
-  view.size = {12, 9};
-  view.pixelSize = 0.4;
-  view.center = {6, 4.5};
-  expectExact(judge(test::SurfaceScene(field), view, kTiles));
+  const auto [scene, view] = test::ballsAlongOneRay();
+  expectExact(judge(scene, view, kTiles));
 }
 
-// Thousands of events at exactly the same places.
 TEST_F(SurfaceTiles, ALatticeSeenAlongAnAxis) {
-  MetaballField field;
-  for (unsigned i = 0; i < 512; ++i) {
-    const glm::vec3 at(i % 8, i / 8 % 8, i / 64);
-    field.balls.push_back({(at - 3.5f) * 1.5f, 2.5f, 0.4f, 0x808080, i + 1});
-  }
-  View view = test::alongZ(0, 0, 20);
-  view.size = {64, 48};
-  view.pixelSize = 0.375;  // every fourth ray meets a row of centres
-  view.center = {32.5, 24.5};
-  expectExact(judge(test::SurfaceScene(field), view, kTiles));
+  const auto [scene, view] = test::latticeAlongAxis();
+  expectExact(judge(scene, view, kTiles));
 }
 
 TEST_F(SurfaceTiles, LevelNearTheMaximum) {
   for (const double below : {1e-2, 1e-3, 1e-4}) {
-    MetaballField field;
-    field.level = 1 - below;
-    field.balls.push_back({{3, 1, -2}, 2.0f, 1.0f, 0x808080, 1});
-    const test::SurfaceScene scene(field);
-    Camera camera;
-    camera.target = {3, 1, -2};
-    camera.distance = 10;
-    camera.fovY = 0.6 * std::sqrt(below);  // what is left fills the picture
     SCOPED_TRACE(below);
-    expectExact(judge(scene, makeView(camera, {64, 48}, scene.primitives->bounds()), kTiles));
+    const auto [scene, view] = test::nearMaximum(1, below);
+    expectExact(judge(scene, view, kTiles));
   }
 }
 
 // Surfaces among themselves, and with quadrics however these are drawn.
 TEST_F(SurfaceTiles, QuadricsAndSurfacesHideEachOther) {
-  test::SurfaceScene scene = test::randomScene(60, 12);
-  scene.primitives->surfaces.push_back(test::randomField({KernelShape::sextic}, 0.4, 40, 6, 0, 13));
-  for (Metaball& ball : scene.primitives->surfaces[1].balls) ball.id += 60;
+  const test::SurfaceScene scene = test::twoSurfaces();
   const View view = viewOf(scene, {96, 72});
   const HitImage surfaces = draw(scene, view, kTiles);
   auto spheres = std::make_shared<Primitives>();
   spheres->origin = scene.primitives->origin;
-  test::Random random(14);
-  for (unsigned i = 0; i < 30; ++i)
-    spheres->spheres.push_back(
-        {glm::vec3(random.inBox(6)), static_cast<float>(random.uniform(0.5, 2)), 0xFFFFFF, 101 + i});
+  spheres->spheres = test::spheresAmongSurfaces();
   scene.primitives->spheres = spheres->spheres;
   for (const QuadricMethod quadrics : {QuadricMethod::splat, QuadricMethod::tiles}) {
     const auto hits = [&](const std::shared_ptr<Primitives>& primitives) {
