@@ -90,6 +90,14 @@ void PassContext::bindTarget() const {
   glViewport(0, 0, width_, height_);
 }
 
+void PassContext::part(const std::string& name, const std::function<void()>& run) const {
+  const auto start = std::chrono::steady_clock::now();
+  run();
+  if (graph_.timed_) glFinish();
+  const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start;
+  graph_.parts_.push_back({name, 1, graph_.timed_ ? spent.count() : 0.0});
+}
+
 FrameGraph::~FrameGraph() {
   for (Resource& resource : resources_) {
     if (resource.pooled) pool_.release(resource.pooled);
@@ -151,7 +159,8 @@ void FrameGraph::clearAttachment(unsigned framebuffer, Resource& resource, int l
   const GLuint zeros[4] = {0, 0, 0, 0};
   if (location == kDepth) {
     glClearNamedFramebufferfv(framebuffer, GL_DEPTH, 0, floats);
-  } else if (resource.desc.format == gl::TextureFormat::r32ui) {
+  } else if (resource.desc.format == gl::TextureFormat::r32ui ||
+             resource.desc.format == gl::TextureFormat::rgba32ui) {
     glClearNamedFramebufferuiv(framebuffer, GL_COLOR, location, zeros);
   } else {
     glClearNamedFramebufferfv(framebuffer, GL_COLOR, location, floats);
@@ -206,6 +215,14 @@ void FrameGraph::run(Pass& pass) {
 }
 
 void FrameGraph::execute(RenderStats& stats, bool timed) {
+  timed_ = timed;
+  const auto addPassStats = [&](const PassStats& pass) {
+    auto entry = std::find_if(stats.passes.begin(), stats.passes.end(),
+                              [&](const PassStats& s) { return s.name == pass.name; });
+    if (entry == stats.passes.end()) entry = stats.passes.insert(entry, {pass.name, 0, 0.0});
+    entry->runs += pass.runs;
+    entry->milliseconds += pass.milliseconds;
+  };
   cull();
   const auto addOmission = [&](const std::string& what, const std::string& reason) {
     const auto same = [&](const OmissionStats& o) { return o.what == what; };
@@ -225,12 +242,13 @@ void FrameGraph::execute(RenderStats& stats, bool timed) {
     const auto start = std::chrono::steady_clock::now();
     run(pass);
     if (timed) glFinish();
-    const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start;
-    auto entry = std::find_if(stats.passes.begin(), stats.passes.end(),
-                              [&](const PassStats& s) { return s.name == pass.name; });
-    if (entry == stats.passes.end()) entry = stats.passes.insert(entry, {pass.name, 0, 0.0});
-    ++entry->runs;
-    if (timed) entry->milliseconds += spent.count();
+    std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start;
+    for (const PassStats& part : parts_) {
+      addPassStats(part);
+      spent -= std::chrono::duration<double, std::milli>(part.milliseconds);
+    }
+    parts_.clear();
+    addPassStats({pass.name, 1, timed ? spent.count() : 0.0});
     for (Resource& resource : resources_) {
       if (resource.pooled && !resource.wanted && resource.lastUse == static_cast<int>(p)) {
         pool_.release(resource.pooled);

@@ -67,6 +67,8 @@ class PassContext {
   TexturePool& pool() const;
   /// Binds the pass's framebuffer and viewport again, after others were bound.
   void bindTarget() const;
+  /// Runs a part of the pass that has a line of its own in the statistics; the pass's own is what remains.
+  void part(const std::string& name, const std::function<void()>& run) const;
 
  private:
   friend class FrameGraph;
@@ -135,6 +137,8 @@ class FrameGraph {
   std::vector<Resource> resources_;
   std::vector<Pass> passes_;
   std::vector<OmissionStats> omissions_;
+  bool timed_ = false;
+  mutable std::vector<PassStats> parts_;  // of the pass that runs
 };
 
 }  // namespace meniscus

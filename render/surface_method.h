@@ -1,6 +1,7 @@
 #pragma once
 // The one interface of all ways to draw a metaball surface, and the list of those there are.
 
+#include <array>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <map>
@@ -20,6 +21,13 @@
 
 namespace meniscus {
 
+/// Layers of translucent surfaces, RGBA32UI each, as shaders/include/lists_layers.glsl writes them: the first
+/// four crossings of the ray in front of what is opaque, in order, and the rest merged.
+struct SurfaceLayerRefs {
+  std::array<TextureRef, 5> of;
+  bool valid() const { return of[0].valid(); }
+};
+
 /// What one sample of one tile is drawn with. The view's uniform block is bound (render/renderer.cpp).
 struct SurfaceTarget {
   const View& view;
@@ -28,6 +36,10 @@ struct SurfaceTarget {
   glm::vec2 sampleShift;  ///< of the rays within their pixels
   GBufferRefs gbuffer;    ///< channels that are not valid are not written; what is in it hides and is hidden
   std::string prefix;     ///< before the passes' names
+  /// If valid, this is written instead of the G-buffer, whose depth still hides; only methods that are
+  /// SurfaceMethodInfo::translucent are asked for it.
+  SurfaceLayerRefs layers = {};
+  SurfaceLayerRefs layersBefore = {};  ///< of other surfaces, to be joined, if valid
 };
 
 /// Draws one field. What a method draws: the first point on the ray at or behind the near plane at which the
@@ -61,6 +73,7 @@ struct SurfaceMethodInfo {
   std::string_view name, summary;
   std::span<const SurfaceParameter> parameters;
   std::unique_ptr<SurfaceMethod> (*make)(const SurfaceParameters& values);
+  bool translucent = false;  ///< can draw SurfaceTarget::layers
 };
 
 /// All methods, in the order of the documentation; a new one adds its line to render/surface_methods.cpp.

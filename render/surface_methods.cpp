@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "render/surface/bezier.h"
+#include "render/surface/lists.h"
 #include "render/surface/tiles.h"
 #include "render/surface_method.h"
 
@@ -16,6 +17,7 @@ std::span<const SurfaceMethodInfo> surfaceMethods() {
       {"tiles", "exact, by the processor, from lists of each screen tile (docs/methods.md)", {}, makeTiles},
       {"bezier", "depth-peeled Bezier clipping (Kanamori, Szego and Nishita 2008)", bezierParameters(),
        makeBezier},
+      {"lists", "fragment lists (Szecsi and Illes 2012)", listsParameters(), makeLists, true},
   };
   return kMethods;
 }

@@ -142,6 +142,9 @@ Limits queryLimits() {
   glGetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport);
   limits.viewportWidth = viewport[0];
   limits.viewportHeight = viewport[1];
+  GLint64 block = 0;
+  glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &block);
+  limits.storageBlock = block;
   return limits;
 }
 

@@ -86,6 +86,7 @@ struct Texture {
 struct Limits {
   int textureSize = 0;
   int viewportWidth = 0, viewportHeight = 0;
+  std::int64_t storageBlock = 0;  ///< bytes of one shader storage block
 };
 Limits queryLimits();
 

@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "render/gl/storage.h"
+#include "render/surface/ball_texture.h"
 #include "render/surface/bezier_statistics.h"
 #include "render/surface/peel_regions.h"
 #include "render/surface/projected_field.h"
@@ -33,8 +34,7 @@ constexpr SurfaceParameter kParameters[] = {
 
 // Storage blocks end at 128 MiB on the reference driver.
 constexpr std::int64_t kListBytes = std::int64_t{96} << 20;
-constexpr int kHeaderSlots = 5;     // shaders/include/bezier_lists.glsl
-constexpr int kBallsPerRow = 1024;  // shaders/include/field.glsl
+constexpr int kHeaderSlots = 5;  // shaders/include/bezier_lists.glsl
 constexpr int kListGrowth = 8;
 // Of 0x20000000 steps on either side some are left out (shaders/include/bezier.glsl).
 constexpr double kSteps = 5.2e8;
@@ -113,7 +113,6 @@ class Bezier : public SurfaceMethod {
 
   void draw(const PassContext& context, ShaderLibrary& shaders, const View& view, const glm::dvec3& origin,
             const Tile& tile, glm::vec2 sampleShift, const GBufferRefs& gbuffer);
-  void uploadBallTexture(const std::vector<ProjectedBall>& balls);
   std::int64_t mostPixels(int list) const;
   void drawRegion(Frame& frame, const ScreenRect& rect, int list, bool again);
   void setUniforms(const Frame& frame, const Region& region);
@@ -139,7 +138,7 @@ class Bezier : public SurfaceMethod {
   gl::Object vertexArray_, stepArray_;
   gl::Storage instances_, steps_, blocks_, balls_, lists_, control_, seen_, spilled_;
   BezierStatistics statistics_;
-  gl::Texture ballTexture_;
+  BallTexture ballTexture_{sizeof(ProjectedBall) / 16};  // tBalls of shaders/include/field.glsl
   gl::Buffer fieldUniforms_, bezierUniforms_;
 };
 
@@ -214,7 +213,7 @@ void Bezier::draw(const PassContext& context, ShaderLibrary& shaders, const View
               view,
               tile,
               {0, 0, tile.width, tile.height},
-              projectField(*field_, coreShares_, view, origin, tile, sampleShift),
+              projectField(*field_, coreShares_, view, origin, tile, sampleShift, BallOrder::depth),
               {},
               {}};
   if (frame.projected.balls.empty()) return;
@@ -226,7 +225,7 @@ void Bezier::draw(const PassContext& context, ShaderLibrary& shaders, const View
   const std::uint64_t ballBytes = frame.projected.balls.size() * sizeof(ProjectedBall);
   balls_.reserve(ballBytes);
   balls_.write(frame.projected.balls.data(), ballBytes);
-  uploadBallTexture(frame.projected.balls);
+  ballTexture_.upload(frame.projected.balls.data(), frame.projected.balls.size());
   spilled_.reserve(static_cast<std::uint64_t>(frame.screen.pixels()) * 4);
   spilled_.zero();
   fieldUniforms_.update(&frame.projected.block);
@@ -241,22 +240,6 @@ void Bezier::draw(const PassContext& context, ShaderLibrary& shaders, const View
   statistics_.ballsInView += static_cast<double>(frame.projected.balls.size());
   statistics_.ballsLeft += static_cast<double>(std::count(frame.left.begin(), frame.left.end(), true));
   context.bindTarget();
-}
-
-// tBalls of shaders/include/field.glsl; colours and ids, which are no floats, are not read from it.
-void Bezier::uploadBallTexture(const std::vector<ProjectedBall>& balls) {
-  const int count = static_cast<int>(balls.size()), rows = (count + kBallsPerRow - 1) / kBallsPerRow;
-  if (ballTexture_.desc.height < rows) {
-    ballTexture_ = {};
-    ballTexture_ = gl::Texture::make({gl::TextureFormat::rgba32f, 4 * kBallsPerRow, rows});
-  }
-  const auto upload = [&](int row, int height, int columns) {
-    if (height > 0 && columns > 0)
-      glTextureSubImage2D(ballTexture_.object.name(), 0, 0, row, 4 * columns, height, GL_RGBA, GL_FLOAT,
-                          balls.data() + static_cast<std::size_t>(row) * kBallsPerRow);
-  };
-  upload(0, count / kBallsPerRow, kBallsPerRow);
-  upload(count / kBallsPerRow, 1, count % kBallsPerRow);
 }
 
 std::int64_t Bezier::mostPixels(int list) const {
@@ -487,7 +470,7 @@ void Bezier::step(Frame& frame, const Region& region, int layer) {
   glBindTextureUnit(2, region.targets.events->object.name());
   glBindTextureUnit(3, region.targets.eventKeys->object.name());
   glBindTextureUnit(4, frame.context.texture(frame.gbuffer.depth).object.name());
-  glBindTextureUnit(5, ballTexture_.object.name());
+  ballTexture_.bind(5);
   const std::uint64_t bytes = region.steps.size() * sizeof(StepInstance);
   steps_.reserve(bytes);
   steps_.write(region.steps.data(), bytes);
@@ -523,7 +506,7 @@ std::vector<ResourceStats> Bezier::buffers() const {
   const auto add = [&](const char* name, std::uint64_t bytes) {
     if (bytes > 0) out.push_back({name, bytes});
   };
-  add("surface: balls", balls_.bytes() + (ballTexture_.object ? ballTexture_.bytes() : 0));
+  add("surface: balls", balls_.bytes() + ballTexture_.bytes());
   add("surface: instances", instances_.bytes());
   add("surface: lists", lists_.bytes());
   add("surface: pixels spilled", spilled_.bytes());

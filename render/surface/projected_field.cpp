@@ -1,11 +1,14 @@
 #include "render/surface/projected_field.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
-#include <numeric>
 
 namespace meniscus {
 
@@ -20,19 +23,6 @@ float low(double x) {
 
 // Rasterizers snap corners to 1/256 pixel.
 constexpr double kPadding = 0.05;
-
-// The largest length of a ray per height in the target.
-double largestStretch(const View& view, const Tile& tile) {
-  if (view.projection == Projection::orthographic) return 1;
-  double largest = 1;
-  for (const double x : {tile.x - 1.0, tile.x + tile.width + 1.0}) {
-    for (const double y : {tile.y - 1.0, tile.y + tile.height + 1.0}) {
-      const glm::dvec2 slope = (glm::dvec2(x, y) - view.center) * view.pixelSize;
-      largest = std::max(largest, std::sqrt(1 + glm::dot(slope, slope)));
-    }
-  }
-  return largest;
-}
 
 // Bounds [pixels from the optical axis] of a sphere along one screen direction: of the planes through the eye
 // that touch it. Everything if it meets the eye plane.
@@ -65,70 +55,157 @@ double planeOf(const std::vector<glm::dvec3>& centers, const MetaballField& fiel
 
 }  // namespace
 
-ProjectedField projectField(const MetaballField& field, const std::vector<float>& coreShares,
-                            const View& view, const glm::dvec3& origin, const Tile& tile,
-                            glm::vec2 sampleShift) {
-  const bool perspective = view.projection == Projection::perspective;
-  const glm::dvec2 corner = glm::dvec2(tile.x, tile.y) + glm::dvec2(sampleShift);
-  const glm::dvec2 size(tile.width, tile.height);
-  const double stretch = largestStretch(view, tile);
-  std::vector<glm::dvec3> centers;
-  centers.reserve(field.balls.size());
-  for (const Metaball& ball : field.balls)
-    centers.push_back(view.rotation * ((origin - view.pivot) + glm::dvec3(ball.center)));
+double largestStretch(const View& view, const Tile& tile, const glm::vec4& box) {
+  if (view.projection == Projection::orthographic) return 1;
+  const glm::dvec2 corner = glm::dvec2(tile.x, tile.y) - view.center;
+  const glm::dvec2 from = glm::abs((glm::dvec2(box.x, box.y) + corner - 1.0) * view.pixelSize);
+  const glm::dvec2 to = glm::abs((glm::dvec2(box.z, box.w) + corner + 2.0) * view.pixelSize);
+  const glm::dvec2 slope = glm::max(from, to);
+  return std::sqrt(1 + glm::dot(slope, slope));
+}
+
+namespace {
+
+class Projector {
+ public:
+  Projector(const MetaballField& field, const std::vector<float>& coreShares, const View& view,
+            const glm::dvec3& origin, const Tile& tile, glm::vec2 sampleShift)
+      : field_(field),
+        coreShares_(coreShares),
+        view_(view),
+        tile_(tile),
+        perspective_(view.projection == Projection::perspective),
+        corner_(glm::dvec2(tile.x, tile.y) + glm::dvec2(sampleShift)),
+        size_(tile.width, tile.height) {
+    centers_.resize(field.balls.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, centers_.size(), kGrain), [&](const auto& some) {
+      for (std::size_t i = some.begin(); i < some.end(); ++i)
+        centers_[i] = view.rotation * ((origin - view.pivot) + glm::dvec3(field.balls[i].center));
+    });
+    plane_ = planeOf(centers_, field);
+    eyeAbove_ = view.distance - plane_;
+  }
+
+  ProjectedField project(BallOrder order) const;
+
+ private:
+  struct Key {
+    double key;
+    std::uint32_t ball;
+    bool operator<(const Key& other) const { return key != other.key ? key < other.key : ball < other.ball; }
+  };
+  static constexpr std::size_t kGrain = 4096;
+
+  double support(std::uint32_t i) const { return static_cast<double>(field_.balls[i].support); }
+  double distanceOf(std::uint32_t i) const;
+  bool box(const glm::dvec3& center, double radius, glm::dvec2& from, glm::dvec2& to) const;
+  void write(std::uint32_t i, std::size_t to, ProjectedField& out) const;
+
+  const MetaballField& field_;
+  const std::vector<float>& coreShares_;
+  const View& view_;
+  const Tile& tile_;
+  bool perspective_;
+  glm::dvec2 corner_, size_;
+  std::vector<glm::dvec3> centers_;
+  double plane_ = 0, eyeAbove_ = 0;
+};
+
+double Projector::distanceOf(std::uint32_t i) const {
+  const glm::dvec3& c = centers_[i];
+  const double below = plane_ - c.z;
+  if (!perspective_) return below - support(i);
+  // |(x, y, depth)| - depth, without cancellation where the eye is far.
+  const double depth = view_.distance - c.z, aside2 = c.x * c.x + c.y * c.y;
+  const double length = std::sqrt(aside2 + depth * depth);
+  const double further = depth > 0 ? aside2 / (length + depth) : length - depth;
+  return below + further - support(i);
+}
+
+// The rectangle around a sphere; false if it lies outside the target.
+bool Projector::box(const glm::dvec3& center, double radius, glm::dvec2& from, glm::dvec2& to) const {
+  const double depth = perspective_ ? view_.distance - center.z : 1.0;
+  extent(view_, center.x, depth, radius, from.x, to.x);
+  extent(view_, center.y, depth, radius, from.y, to.y);
+  from = glm::max(from + view_.center - corner_ - kPadding, glm::dvec2(-1.0));
+  to = glm::min(to + view_.center - corner_ + kPadding, size_ + 1.0);
+  return from.x < to.x && from.y < to.y && to.x > 0 && to.y > 0 && from.x < size_.x && from.y < size_.y;
+}
+
+void Projector::write(std::uint32_t i, std::size_t to, ProjectedField& out) const {
+  const Metaball& ball = field_.balls[i];
+  const glm::dvec3& c = centers_[i];
+  const double depth = perspective_ ? view_.distance - c.z : 1.0;
+  const double r = support(i), core = static_cast<double>(coreShares_[i]) * r;
+  ProjectedBall b{};
+  b.place.y = high(r * r);
+  b.eye.w = core > 0 ? high(core * core) : -1.0f;
+  double below = plane_ - c.z;
+  if (perspective_ && depth < 2 * r) {  // close by or behind: the ray is taken from the eye
+    b.eye = {high(-c.x), high(-c.y), high(depth), b.eye.w};
+    below = -eyeAbove_;
+  } else {
+    const glm::dvec2 pixel = glm::dvec2(c) / (depth * view_.pixelSize) + view_.center;
+    b.pixel = {high(pixel.x), high(pixel.y), low(pixel.x), low(pixel.y)};
+    b.place.x = high(depth * view_.pixelSize);
+  }
+  b.place.z = high(below);
+  b.place.w = low(below);
+  b.coefficient = ball.coefficient;
+  b.inverseR2 = high(1 / (r * r));
+  b.color = ball.color;
+  b.id = ball.id;
+  out.balls[to] = b;
+  glm::dvec2 least, most;
+  box(c, r, least, most);
+  out.boxes[to] = glm::vec4(glm::dvec4(least, most));
+  const bool seen = core > 0 && box(c, core, least, most);
+  out.coreBoxes[to] = seen ? glm::vec4(glm::dvec4(least, most)) : glm::vec4(0.0f);
+  out.distances[to] = distanceOf(i);
+  out.depths[to] = {plane_ - c.z - r, plane_ - c.z + r};
+}
+
+ProjectedField Projector::project(BallOrder order) const {
+  std::vector<Key> keys(centers_.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, keys.size(), kGrain), [&](const auto& some) {
+    for (std::size_t n = some.begin(); n < some.end(); ++n) {
+      const auto i = static_cast<std::uint32_t>(n);
+      const glm::dvec3& c = centers_[i];
+      glm::dvec2 from, to;
+      const bool seen = c.z - support(i) <= view_.nearZ && box(c, support(i), from, to);
+      const double key = order == BallOrder::depth ? -(c.z + support(i)) : distanceOf(i);
+      keys[n] = {seen ? key : std::numeric_limits<double>::infinity(), i};
+    }
+  });
+  std::erase_if(keys, [](const Key& key) { return key.key == std::numeric_limits<double>::infinity(); });
+  tbb::parallel_sort(keys);
 
   ProjectedField out;
-  const double plane = planeOf(centers, field), eyeAbove = view.distance - plane;
-  out.block.plane = {high(plane), high(eyeAbove), low(eyeAbove), 0.0f};
-  out.block.field = {static_cast<float>(field.level), static_cast<float>(field.kernel.exponent),
-                     static_cast<float>(field.kernel.shape), 0.0f};
-  out.nearDepth = plane - view.nearZ;
-  std::vector<std::uint32_t> order(field.balls.size());
-  std::iota(order.begin(), order.end(), 0u);
-  const auto top = [&](std::uint32_t i) {
-    return centers[i].z + static_cast<double>(field.balls[i].support);
-  };
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return top(a) > top(b); });
-  for (const std::uint32_t i : order) {
-    const Metaball& ball = field.balls[i];
-    const glm::dvec3 c = centers[i];
-    const double support = static_cast<double>(ball.support);
-    if (c.z - support > view.nearZ) continue;
-    const double depth = perspective ? view.distance - c.z : 1.0;
-    glm::dvec2 from, to;
-    extent(view, c.x, depth, support, from.x, to.x);
-    extent(view, c.y, depth, support, from.y, to.y);
-    from = glm::max(from + view.center - corner - kPadding, glm::dvec2(-1.0));
-    to = glm::min(to + view.center - corner + kPadding, size + 1.0);
-    if (!(from.x < to.x && from.y < to.y && to.x > 0 && to.y > 0 && from.x < size.x && from.y < size.y))
-      continue;
-
-    const double core = static_cast<double>(coreShares[i]) * support;
-    ProjectedBall b{};
-    b.place.y = high(support * support);
-    b.eye.w = core > 0 ? high(core * core) : -1.0f;
-    double below = plane - c.z;
-    if (perspective && depth < 2 * support) {  // close by or behind: the ray is taken from the eye
-      b.eye = {high(-c.x), high(-c.y), high(depth), b.eye.w};
-      below = -eyeAbove;
-    } else {
-      const glm::dvec2 pixel = glm::dvec2(c) / (depth * view.pixelSize) + view.center;
-      b.pixel = {high(pixel.x), high(pixel.y), low(pixel.x), low(pixel.y)};
-      b.place.x = high(depth * view.pixelSize);
-    }
-    b.place.z = high(below);
-    b.place.w = low(below);
-    b.coefficient = ball.coefficient;
-    b.inverseR2 = high(1 / (support * support));
-    b.color = ball.color;
-    b.id = ball.id;
-    out.balls.push_back(b);
-    out.boxes.emplace_back(from.x, from.y, to.x, to.y);
-    out.depths.emplace_back(plane - c.z - support, plane - c.z + support);
-    out.reach = std::max(out.reach, (std::abs(c.z - plane) + support) * stretch);
-  }
+  out.block.plane = {high(plane_), high(eyeAbove_), low(eyeAbove_), 0.0f};
+  out.block.field = {static_cast<float>(field_.level), static_cast<float>(field_.kernel.exponent),
+                     static_cast<float>(field_.kernel.shape), 0.0f};
+  out.nearDepth = plane_ - view_.nearZ;
+  out.balls.resize(keys.size());
+  out.boxes.resize(keys.size());
+  out.coreBoxes.resize(keys.size());
+  out.distances.resize(keys.size());
+  out.depths.resize(keys.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, keys.size(), kGrain), [&](const auto& some) {
+    for (std::size_t n = some.begin(); n < some.end(); ++n) write(keys[n].ball, n, out);
+  });
+  double farthest = 0;
+  for (const Key& key : keys)
+    farthest = std::max(farthest, std::abs(centers_[key.ball].z - plane_) + support(key.ball));
+  out.reach = farthest * largestStretch(view_, tile_, glm::vec4(glm::dvec4(0, 0, size_)));
   return out;
+}
+
+}  // namespace
+
+ProjectedField projectField(const MetaballField& field, const std::vector<float>& coreShares,
+                            const View& view, const glm::dvec3& origin, const Tile& tile,
+                            glm::vec2 sampleShift, BallOrder order) {
+  return Projector(field, coreShares, view, origin, tile, sampleShift).project(order);
 }
 
 }  // namespace meniscus

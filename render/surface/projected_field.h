@@ -32,10 +32,20 @@ struct FieldBlock {
   glm::vec4 field;  ///< level; exponent; kernel; 0
 };
 
+enum class BallOrder : std::uint8_t {
+  depth,    ///< by the depth of their nearest points
+  distance  ///< by their effective distance: how far their nearest points are from the eye (orthographic: the
+            ///< same as depth)
+};
+
 struct ProjectedField {
-  /// That reach behind the near plane and into the target; by their nearest point, then in the field's order.
+  /// That reach behind the near plane and into the target; in their order, equals in the field's.
   std::vector<ProjectedBall> balls;
-  std::vector<glm::vec4> boxes;  ///< of each: rectangle around it, in pixels of the target
+  std::vector<glm::vec4> boxes;      ///< of each: rectangle around it, in pixels of the target
+  std::vector<glm::vec4> coreBoxes;  ///< the same around its core; empty (to <= from) if it has none
+  /// Of each: its effective distance less the height of the eye above the plane (orthographic: how far its
+  /// nearest point lies below the plane) [Å].
+  std::vector<double> distances;
   /// Of each: how far its nearest and its farthest point lie below the plane [Å]; positive z is away from the
   /// viewer.
   std::vector<glm::dvec2> depths;
@@ -47,6 +57,9 @@ struct ProjectedField {
 /// coreShares: coreShare() of each ball.
 ProjectedField projectField(const MetaballField& field, const std::vector<float>& coreShares,
                             const View& view, const glm::dvec3& origin, const Tile& tile,
-                            glm::vec2 sampleShift);
+                            glm::vec2 sampleShift, BallOrder order);
+
+/// The largest length of a ray per height within a rectangle [pixels of the target, with the sample's shift].
+double largestStretch(const View& view, const Tile& tile, const glm::vec4& box);
 
 }  // namespace meniscus

@@ -1,6 +1,7 @@
 // A field's balls, the sum of their shares on an interval of a ray, and what its surface is like at a point.
 // Needs include/ball_ray.glsl, shared/metaball.glsl. Flags: KERNEL_QUARTIC, KERNEL_POWER (neither: sextic)
-// choose the kernel of the pieces; fieldSurface() takes any.
+// choose the kernel of the pieces; what the surface is like is right for any. CUBIC: polynomials of degree
+// three, whose shares the method itself adds.
 
 struct Ball {
   BallProjection projection;
@@ -33,7 +34,9 @@ Ball fetchBall(uint index) {
   return ball;
 }
 
-#if defined(KERNEL_POWER)
+#if defined(CUBIC)
+const int kMostDegree = 3;
+#elif defined(KERNEL_POWER)
 const int kMostDegree = 2 * kMostExponent;
 #elif defined(KERNEL_QUARTIC)
 const int kMostDegree = 4;
@@ -43,7 +46,7 @@ const int kMostDegree = 6;
 
 // Of the polynomials along a ray: a constant but for the power kernel.
 int fieldDegree() {
-#ifdef KERNEL_POWER
+#if defined(KERNEL_POWER) && !defined(CUBIC)
   return 2 * int(uField.y);
 #else
   return kMostDegree;
@@ -61,6 +64,7 @@ Polygon constantPolygon(float value) {
   return p;
 }
 
+#ifndef CUBIC
 void addShare(inout Polygon sum, Window w, float coefficient) {
 #if defined(KERNEL_POWER)
   PowerPiece piece = powerPiece(w, int(uField.y));
@@ -71,6 +75,7 @@ void addShare(inout Polygon sum, Window w, float coefficient) {
 #endif
   for (int k = 0; k <= fieldDegree(); ++k) sum.c[k] += coefficient * piece.c[k];
 }
+#endif
 
 float kernelAt(float w) {
   if (uField.z > 1.5) return powerKernel(w, int(uField.y));
@@ -106,10 +111,8 @@ vec3 bytesOf(uint color) {
   return vec3(uvec3(color >> 16, color >> 8, color) & 255u);
 }
 
-// place: of the point on the ray.
-void addToSurface(inout FieldSurface s, Ball ball, SceneRay ray, Split place) {
-  BallRay b = ballOnRay(ball.projection, ray);
-  float along = placeBetween(b.middle, place);
+// b: the ball on the ray; along: from where the ray is nearest to its centre to the point.
+void addToSurface(inout FieldSurface s, Ball ball, SceneRay ray, BallRay b, float along) {
   float w = clamp((b.halfChord2 - along * along) * ball.inverseR2, 0.0, 1.0);
   s.outward += ball.coefficient * kernelSlopeAt(w) * ball.inverseR2 * (b.nearest + along * ray.direction);
   float share = ball.coefficient * kernelAt(w);
@@ -122,6 +125,12 @@ void addToSurface(inout FieldSurface s, Ball ball, SceneRay ray, Split place) {
   s.weight += share;
   vec3 bytes = bytesOf(ball.color);
   s.squares += share * bytes * bytes;
+}
+
+// place: of the point on the ray.
+void addToSurface(inout FieldSurface s, Ball ball, SceneRay ray, Split place) {
+  BallRay b = ballOnRay(ball.projection, ray);
+  addToSurface(s, ball, ray, b, placeBetween(b.middle, place));
 }
 
 // Stored colours are blended by their squares: nearly linear light.

@@ -1,0 +1,26 @@
+#pragma once
+// Numbers of the balls of a field, for shaders: software drivers read vectors from textures several times as
+// fast as from buffers.
+
+#include <cstddef>
+
+#include "render/gl/objects.h"
+
+namespace meniscus {
+
+class BallTexture {
+ public:
+  /// So many texels of four floats for each ball; 1024 balls (kBallsPerRow of shaders/include/field.glsl) in
+  /// a row.
+  explicit BallTexture(int texelsPerBall) : texels_(texelsPerBall) {}
+  /// Numbers of `count` balls one after the other. Throws GraphicsError if the driver has no room for them.
+  void upload(const void* numbers, std::size_t count);
+  void bind(unsigned unit) const;
+  std::uint64_t bytes() const { return texture_.object ? texture_.bytes() : 0; }
+
+ private:
+  int texels_;
+  gl::Texture texture_;
+};
+
+}  // namespace meniscus

@@ -1,0 +1,294 @@
+// The surface as fragment lists draw it, against the truth: molecules, random scenes, scenes that break
+// lists.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "core/error.h"
+#include "tests/gpu/surface_judge.h"
+#include "tests/support/exact_field.h"
+
+namespace meniscus {
+namespace {
+
+constexpr Projection kBoth[] = {Projection::perspective, Projection::orthographic};
+
+SurfaceSettings lists(std::map<std::string, double> parameters = {}) {
+  return {"lists", std::move(parameters)};
+}
+
+class Lists : public test::SurfaceTest {};
+
+TEST_F(Lists, RandomBalls) {
+  const test::SurfaceScene scene = test::randomScene(1000, 1);
+  for (const Projection projection : kBoth)
+    expectExact(judge(scene, viewOf(scene, {120, 90}, projection), lists()));
+  EXPECT_EQ(stats.notConverged, 0u);
+  EXPECT_EQ(stats.overflow, 0u);
+  // The running polynomial settles most pieces.
+  EXPECT_LT(detail("pieces looked at for roots"), 0.5 * static_cast<double>(stats.pieces));
+}
+
+TEST_F(Lists, EveryMolecule) {
+  const auto files = test::moleculeFiles();
+  EXPECT_GE(files.size(), 15u);
+  for (const auto& file : files) {
+    const std::string name = file.filename().string();
+    SCOPED_TRACE(name);
+    const test::SurfaceScene scene = test::moleculeScene(file);
+    expectExact(judge(scene, viewOf(scene, {96, 72}), lists(), name));
+  }
+}
+
+TEST_F(Lists, EveryKernel) {
+  for (const Kernel kernel :
+       {Kernel{KernelShape::sextic}, Kernel{KernelShape::quartic}, Kernel{KernelShape::power, 2},
+        Kernel{KernelShape::power, 7}, Kernel{KernelShape::power, 16}}) {
+    const std::string name =
+        "kernel" + std::to_string(static_cast<int>(kernel.shape)) + "_" + std::to_string(kernel.exponent);
+    SCOPED_TRACE(name);
+    const test::SurfaceScene scene(test::randomField(kernel, 0.3, 60, 4, 0, 7));
+    const View view = viewOf(scene, {80, 60});
+    expectExact(judge(scene, view, lists(), name));
+    expectExact(judge(scene, view, lists({{"array", 3}}), name + "walked"));
+  }
+}
+
+TEST_F(Lists, EveryOptionGivesTheSameSurface) {
+  const test::SurfaceScene scene = test::randomScene(150, 3);
+  const View view = viewOf(scene, {80, 60});
+  for (const std::map<std::string, double>& parameters : {std::map<std::string, double>{{"culling", 0}},
+                                                          {{"order", 0}},
+                                                          {{"array", 3}},
+                                                          {{"array", 20}},
+                                                          {{"tolerance", 1e-3}}}) {
+    SCOPED_TRACE(parameters.begin()->first);
+    expectExact(judge(scene, view, lists(parameters)));
+  }
+}
+
+// Walking the list finds what the array finds, whatever the array could not hold.
+TEST_F(Lists, ShortArraysAreRepairedAndCounted) {
+  const test::SurfaceScene scene = test::randomScene(150, 3);
+  const View view = viewOf(scene, {80, 60});
+  expectExact(judge(scene, view, lists()));
+  EXPECT_EQ(stats.overflow, 0u);
+  const std::uint64_t pixels = stats.pixels;
+  expectExact(judge(scene, view, lists({{"array", 8}})));
+  EXPECT_GT(stats.overflow, 100u);
+  EXPECT_LT(stats.overflow, pixels);
+  EXPECT_EQ(stats.pixels, pixels) << "a pixel counts once, however often it is done";
+}
+
+// OpenGL promises no order of fragments; the lists promise theirs.
+TEST_F(Lists, AreInOrderHoweverTheyAreGathered) {
+  const test::SurfaceScene scene = test::randomScene(150, 3);
+  const View view = viewOf(scene, {80, 60});
+  const HitImage ordered = draw(scene, view, lists());
+  EXPECT_EQ(detail("lists put in order"), 0);
+  const HitImage turned = draw(scene, view, lists({{"order", 0}}));
+  EXPECT_GT(detail("lists put in order"), 100);
+  EXPECT_EQ(turned.distance, ordered.distance);
+  EXPECT_EQ(turned.id, ordered.id);
+}
+
+TEST_F(Lists, BandsGiveTheSameBytes) {
+  const test::SurfaceScene scene = test::randomScene(3000, 3);
+  const View view = viewOf(scene, {160, 120});
+  const HitImage whole = draw(scene, view, lists({{"culling", 0}}));
+  EXPECT_EQ(detail("bands"), 1);
+  const HitImage banded = draw(scene, view, lists({{"culling", 0}, {"memory", 0.5}}));
+  EXPECT_GT(detail("bands"), 2);
+  EXPECT_EQ(banded.distance, whole.distance);
+  EXPECT_EQ(banded.id, whole.id);
+}
+
+// A row of pixels whose lists do not fit is parted, a pixel whose list does not is refused.
+TEST_F(Lists, ListsLongerThanTheMemory) {
+  MetaballField field;
+  for (unsigned i = 1; i <= 2000; ++i) field.balls.push_back({{0, 0, 0}, 2.0f, 1e-3f, 0x808080, i});
+  const test::SurfaceScene scene(field);
+  View view = test::alongZ(0, 0, 10);
+  view.size = {3, 2};
+  view.pixelSize = 0.2;
+  view.center = {1.5, 1};
+  expectExact(judge(scene, view, lists()));
+  EXPECT_EQ(detail("longest list"), 2000);
+  EXPECT_EQ(detail("bands"), 1);
+  expectExact(judge(scene, view, lists({{"memory", 0.02}})));
+  EXPECT_EQ(detail("bands"), 6);
+  try {
+    draw(scene, view, lists({{"memory", 0.01}}));
+    ADD_FAILURE() << "drew it";
+  } catch (const GraphicsError& error) {
+    EXPECT_NE(std::string(error.what()).find("2000 balls lie behind one pixel"), std::string::npos);
+  }
+}
+
+// Mesa's software driver ends loops that run too often; where it has, the picture is refused.
+TEST_F(Lists, MoreOverlapThanTheDriverCanLoopOver) {
+  MetaballField field;
+  for (unsigned i = 1; i <= 70000; ++i) field.balls.push_back({{0, 0, 0}, 2.0f, 1e-4f, 0x808080, i});
+  View view = test::alongZ(0, 0, 10);
+  view.pixelSize = 0.2;
+  try {
+    expectExact(judge(test::SurfaceScene(field), view, lists()));
+  } catch (const GraphicsError& error) {
+    EXPECT_NE(std::string(error.what()).find("more balls overlap in 1 pixels"), std::string::npos);
+  }
+}
+
+TEST_F(Lists, TwoHundredCoincidentBalls) {
+  const test::SurfaceScene scene = test::coincidentBalls();
+  for (const Projection projection : kBoth) {
+    expectExact(judge(scene, viewOf(scene, {24, 18}, projection), lists()));
+    EXPECT_GT(stats.overflow, 50u);
+    EXPECT_EQ(detail("longest list"), 200);
+  }
+}
+
+TEST_F(Lists, AThousandBallsAlongOneRay) {
+  const auto [scene, view] = test::ballsAlongOneRay();
+  for (const double array : {64, 3}) expectExact(judge(scene, view, lists({{"array", array}})));
+}
+
+TEST_F(Lists, ALatticeSeenAlongAnAxis) {
+  const auto [scene, view] = test::latticeAlongAxis();
+  expectExact(judge(scene, view, lists()));
+  expectExact(judge(scene, view, lists({{"culling", 0}})));
+  expectExact(judge(scene, latticeInPerspective(scene), lists()));
+}
+
+TEST_F(Lists, NegativeBallsHollowTheSurface) {
+  for (const Kernel kernel : {Kernel{}, Kernel{KernelShape::quartic}}) {
+    const test::SurfaceScene scene(test::randomField(kernel, 0.3, 80, 4, 3, 11));
+    for (const Projection projection : kBoth)
+      expectExact(judge(scene, viewOf(scene, {80, 60}, projection), lists()));
+  }
+  const auto [scene, view] = test::insideOfCavity();
+  const HitErrors errors = judge(scene, view, lists());
+  expectExact(errors);
+  EXPECT_EQ(errors.compared + errors.grazing, 64u * 48u);
+}
+
+TEST_F(Lists, CameraInsideBallsAndInsideTheSurface) {
+  const test::SurfaceScene scene = test::randomScene(200, 5);
+  const std::vector<View> views = viewsFromInside(scene);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    SCOPED_TRACE(i);
+    expectExact(judge(scene, views[i], lists(), "inside" + std::to_string(i)));
+    expectExact(judge(scene, views[i], lists({{"array", 3}}), "inside" + std::to_string(i) + "walked"));
+  }
+}
+
+TEST_F(Lists, SpheresAndSurfacesHideEachOther) {
+  const test::SurfaceScene scene = test::twoSurfaces();
+  const View view = viewOf(scene, {96, 72});
+  const HitImage surfaces = draw(scene, view, lists());
+  auto spheres = std::make_shared<Primitives>();
+  spheres->origin = scene.primitives->origin;
+  spheres->spheres = test::spheresAmongSurfaces();
+  const HitImage alone = draw({spheres}, view, lists());
+  scene.primitives->spheres = spheres->spheres;
+  const HitImage both = draw(scene, view, lists());
+  int fromSpheres = 0, fromSurfaces = 0;
+  for (std::size_t i = 0; i < both.id.size(); ++i) {
+    const bool sphere = alone.distance[i] < surfaces.distance[i];
+    if (std::abs(alone.distance[i] - surfaces.distance[i]) < 1e-4f) continue;
+    EXPECT_EQ(both.id[i], sphere ? alone.id[i] : surfaces.id[i]);
+    EXPECT_EQ(both.distance[i], sphere ? alone.distance[i] : surfaces.distance[i]);
+    ++(sphere ? fromSpheres : fromSurfaces);
+  }
+  EXPECT_GT(fromSpheres, 100);
+  EXPECT_GT(fromSurfaces, 100);
+}
+
+TEST_F(Lists, AnyTilesOfTheTargetGiveTheSameBytes) {
+  const test::SurfaceScene scene = test::randomScene(150, 3);
+  const View view = viewOf(scene, {90, 70});
+  const HitImage whole = draw(scene, view, lists());
+  RendererOptions small;
+  small.maxTileSize = 33;
+  Renderer renderer(small);
+  renderer.setPrimitives(scene.primitives);
+  const HitImage parts = renderer.renderHits(view, {}, lists());
+  EXPECT_EQ(parts.id, whole.id);
+  EXPECT_EQ(parts.distance, whole.distance);
+  EXPECT_EQ(draw(scene, view, lists()).distance, whole.distance) << "the same every time";
+}
+
+TEST_F(Lists, RefusesNumbersThatAreNotFinite) {
+  test::SurfaceScene scene = test::randomScene(10, 1);
+  const View view = viewOf(scene, {16, 12});
+  scene.primitives->surfaces[0].balls[3].support = std::numeric_limits<float>::infinity();
+  EXPECT_THROW(draw(scene, view, lists()), InputError);
+}
+
+TEST_F(Lists, SupportsFromAThousandthToAThousand) {
+  const test::SurfaceScene scene = test::manyScales();
+  for (const double radius : {1000.0, 10.0, 0.1, 0.001}) {
+    SCOPED_TRACE(radius);
+    expectExact(judge(scene, viewOfScale(scene, radius), lists(), "radius" + std::to_string(radius)));
+  }
+  expectExact(judge(scene, viewOf(scene, {64, 48}, Projection::orthographic), lists(), "orthographic"));
+}
+
+TEST_F(Lists, FarAway) {
+  test::SurfaceScene scene = test::randomScene(150, 3);
+  expectExact(judge(scene, viewFromAfar(scene, {96, 72}), lists()));
+  scene.primitives->origin = {1e6, -1e6, 1e6 + 0.123456789};
+  expectExact(judge(scene, viewOf(scene, {96, 72}), lists()));
+}
+
+TEST_F(Lists, FieldsOfViewOfOneAndOf150Degrees) {
+  const test::SurfaceScene scene = test::randomScene(150, 3);
+  for (const double degrees : {1.0, 150.0}) {
+    SCOPED_TRACE(degrees);
+    expectExact(judge(scene, viewOfAngle(scene, degrees), lists(),
+                      "fov" + std::to_string(static_cast<int>(degrees))));
+  }
+}
+
+TEST_F(Lists, LevelNearZero) {
+  for (const double level : {1e-2, 1e-4, 1e-6}) {
+    test::SurfaceScene scene = test::randomScene(60, 6);
+    scene.primitives->surfaces[0].level = level;
+    SCOPED_TRACE(level);
+    expectExact(judge(scene, viewOf(scene, {96, 72}), lists(), "level" + std::to_string(level)));
+  }
+}
+
+TEST_F(Lists, LevelNearTheMaximum) {
+  for (const unsigned balls : {1u, 2u}) {
+    for (const double below : {1e-2, 1e-3, 1e-4}) {
+      SCOPED_TRACE(below);
+      const auto [scene, view] = test::nearMaximum(balls, below);
+      expectExact(
+          judge(scene, view, lists(), "balls" + std::to_string(balls) + "_below" + std::to_string(below)));
+    }
+  }
+}
+
+TEST_F(Lists, NothingIsDrawnAboveEveryMaximum) {
+  for (const unsigned balls : {1u, 2u, 40u}) {
+    const test::SurfaceScene scene = test::nearMaximum(balls, -1e-5).scene;
+    const HitImage image = draw(scene, viewOf(scene, {63, 47}), lists());
+    EXPECT_EQ(std::count(image.id.begin(), image.id.end(), 0u), std::ptrdiff_t{63} * 47);
+  }
+}
+
+TEST_F(Lists, TangentRays) {
+  const auto [scene, view] = test::tangentRays();
+  const HitImage image = draw(scene, view, lists());
+  // Of two balls' sum, which is the level to the last bit, rounding decides.
+  for (int i = 0; i < 15 * 15; ++i) {
+    const bool sum = i == 7 * 15 + 7;
+    EXPECT_TRUE(sum || image.id[static_cast<std::size_t>(i)] == 0) << i;
+  }
+  EXPECT_EQ(stats.notConverged, 0u);
+}
+
+}  // namespace
+}  // namespace meniscus
