@@ -175,6 +175,10 @@ void addSurfaceOptions(CLI::App& app, RenderOptions& o) {
               "The field's value on the surface; smaller is thicker\n"
               "[a lone atom shows its van der Waals radius]",
               [&o](auto& n, auto& v) { o.surfaceShape.level = parseNumber(n, v, 1e-6, 1e6); });
+  group.value("--opacity", "F",
+              "Of the surface, 0 to 1; below 1 one sees through it, and it\n"
+              "is drawn by lists: four layers in order, the rest merged [1]",
+              [&o](auto& n, auto& v) { o.surface.opacity = parseNumber(n, v, 0, 1); });
   group.value("--surface-method", "NAME", surfaceMethodHelp(), [&o](auto& n, auto& v) {
     std::vector<std::string_view> names{"auto"};
     for (const SurfaceMethodInfo& method : surfaceMethods()) names.push_back(method.name);
@@ -361,7 +365,7 @@ void requireConsistent(const CLI::App& app, RenderOptions& o) {
   if (std::filesystem::is_directory(o.output)) requireWritable(o.output);  // says that it is a folder
   if (!(o.fog.start < o.fog.end))
     throw UsageError("--fog-start: must be less than --fog-end (they are 0.2 and 1 unless given)");
-  if (o.surface.parameters.size() > 0 || o.surface.method != "auto")
+  if (o.surface.parameters.size() > 0 || o.surface.method != "auto" || o.surface.translucent())
     surfaceParametersFor(surfaceMethodFor(o.surface), o.surface);  // throws if it has no such parameter
   const ImageType type = imageTypeOf(o.output);
   if (type == ImageType::exr && app.count("--depth") > 0)

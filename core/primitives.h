@@ -51,6 +51,7 @@ struct Primitives {
   bool empty() const {
     return spheres.empty() && cylinders.empty() && ellipsoids.empty() && surfaces.empty();
   }
+  bool onlySurfaces() const { return spheres.empty() && cylinders.empty() && ellipsoids.empty(); }
   BoundingSphere bounds() const;  ///< world space
 };
 

@@ -83,6 +83,8 @@ enum class QuadricMethod : std::uint8_t {
 struct SurfaceSettings {
   std::string method = "auto";
   std::map<std::string, double> parameters;  ///< those that are not the method's defaults
+  double opacity = 1;  ///< 0..1 of a place where a ray crosses a surface; below 1 it is translucent
+  bool translucent() const { return opacity < 1; }
   bool operator==(const SurfaceSettings&) const = default;
 };
 

@@ -4,11 +4,26 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <limits>
 
 #include "core/error.h"
 
 namespace meniscus {
+
+namespace {
+
+PassStats measured(const std::string& name, bool timed, const std::function<void()>& run) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t processor = std::clock();
+  run();
+  if (!timed) return {name, 1};
+  glFinish();
+  const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start;
+  return {name, 1, spent.count(), 1e3 * static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC};
+}
+
+}  // namespace
 
 gl::Texture* TexturePool::acquire(const std::string& name, const gl::TextureDesc& desc) {
   for (Entry& entry : entries_) {
@@ -91,11 +106,7 @@ void PassContext::bindTarget() const {
 }
 
 void PassContext::part(const std::string& name, const std::function<void()>& run) const {
-  const auto start = std::chrono::steady_clock::now();
-  run();
-  if (graph_.timed_) glFinish();
-  const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start;
-  graph_.parts_.push_back({name, 1, graph_.timed_ ? spent.count() : 0.0});
+  graph_.parts_.push_back(measured(name, graph_.timed_, run));
 }
 
 FrameGraph::~FrameGraph() {
@@ -219,9 +230,10 @@ void FrameGraph::execute(RenderStats& stats, bool timed) {
   const auto addPassStats = [&](const PassStats& pass) {
     auto entry = std::find_if(stats.passes.begin(), stats.passes.end(),
                               [&](const PassStats& s) { return s.name == pass.name; });
-    if (entry == stats.passes.end()) entry = stats.passes.insert(entry, {pass.name, 0, 0.0});
+    if (entry == stats.passes.end()) entry = stats.passes.insert(entry, {pass.name});
     entry->runs += pass.runs;
     entry->milliseconds += pass.milliseconds;
+    entry->processorMs += pass.processorMs;
   };
   cull();
   const auto addOmission = [&](const std::string& what, const std::string& reason) {
@@ -239,16 +251,14 @@ void FrameGraph::execute(RenderStats& stats, bool timed) {
       addOmission("pass " + pass.name, "nothing it writes is wanted");
       continue;
     }
-    const auto start = std::chrono::steady_clock::now();
-    run(pass);
-    if (timed) glFinish();
-    std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start;
+    PassStats spent = measured(pass.name, timed, [&] { run(pass); });
     for (const PassStats& part : parts_) {
       addPassStats(part);
-      spent -= std::chrono::duration<double, std::milli>(part.milliseconds);
+      spent.milliseconds -= part.milliseconds;
+      spent.processorMs -= part.processorMs;
     }
     parts_.clear();
-    addPassStats({pass.name, 1, timed ? spent.count() : 0.0});
+    addPassStats(spent);
     for (Resource& resource : resources_) {
       if (resource.pooled && !resource.wanted && resource.lastUse == static_cast<int>(p)) {
         pool_.release(resource.pooled);

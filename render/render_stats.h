@@ -12,6 +12,7 @@ struct PassStats {
   std::string name;
   int runs = 0;             ///< how often (tiles x samples)
   double milliseconds = 0;  ///< all runs together, measured when RendererOptions::timePasses
+  double processorMs = 0;   ///< the same in processor time of all threads
 };
 
 struct OmissionStats {

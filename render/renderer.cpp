@@ -3,8 +3,11 @@
 #include <glad/gl.h>
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cmath>
+#include <glm/vec4.hpp>
+#include <limits>
 
 #include "core/error.h"
 #include "core/light_view.h"
@@ -18,6 +21,7 @@
 #include "render/post/shade.h"
 #include "render/post/shadow.h"
 #include "render/post/silhouette.h"
+#include "render/post/translucent.h"
 #include "render/quadrics.h"
 #include "render/surface_passes.h"
 #include "render/tile_quadrics.h"
@@ -111,8 +115,12 @@ struct Frame {
   TextureLease shadowMapTexture = {};
   bool occlusion = false;
   UnsharpKernel unsharp = {};
-  int margin = 0;  // of a tile: how far its pixels' effects look [pixels]
+  int margin = 0;            // of a tile: how far its pixels' effects look [pixels]
+  bool translucent = false;  // surfaces are laid over the rest, layer by layer
 };
+
+// What becomes of the surfaces of a scene.
+enum class Surfaces : std::uint8_t { opaque, apart };
 
 }  // namespace
 
@@ -156,16 +164,18 @@ struct Renderer::Impl {
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, viewUniforms.object.name());
   }
 
-  // All that is to be seen, into the channels of a G-buffer. setView() must have been called alike.
+  // All that is to be seen, or all but the surfaces, into the channels of a G-buffer. setView() must have
+  // been called alike.
   void addScene(FrameGraph& graph, const View& view, const Tile& tile, glm::vec2 sampleShift,
-                const GBufferRefs& gbuffer, const std::string& prefix = {}) {
+                const GBufferRefs& gbuffer, Surfaces drawn, const std::string& prefix = {}) {
     if (quadricChoice.tiles) {
       tileQuadrics.add(graph, view, tile, sampleShift, gbuffer, prefix);
     } else {
       addQuadrics(graph, quadrics, shaders, gbuffer, prefix);
     }
     leaveOutOtherQuadrics(graph, prefix);
-    surfaces.add(graph, shaders, {view, primitives->origin, tile, sampleShift, gbuffer, prefix});
+    if (drawn == Surfaces::opaque)
+      surfaces.add(graph, shaders, {view, primitives->origin, tile, sampleShift, gbuffer, prefix});
   }
 
   void leaveOutOtherQuadrics(FrameGraph& graph, const std::string& prefix) {
@@ -185,7 +195,8 @@ struct Renderer::Impl {
                          TextureRef target) {
     setView(frame.view, tile, sampleShift);
     const GBufferRefs gbuffer = createGBuffer(graph, tile.width, tile.height);
-    addScene(graph, frame.view, tile, sampleShift, gbuffer);
+    addScene(graph, frame.view, tile, sampleShift, gbuffer,
+             frame.translucent ? Surfaces::apart : Surfaces::opaque);
     LightRefs light;
     if (frame.shadowMap.depth) {
       light.visibility = addShadow(graph, frame.settings.shadows, frame.shadowMap, shadowUniforms, shaders,
@@ -209,9 +220,27 @@ struct Renderer::Impl {
     } else {
       graph.leaveOut("pass silhouette", "outlines are off");
     }
-    addShade(graph, frame.shade, shadeUniforms, shaders, gbuffer, light, target);
+    if (frame.translucent) {
+      addShadeUnderLayers(graph, frame, tile, sampleShift, gbuffer, light, target);
+    } else {
+      graph.leaveOut("pass translucent", "no surface is translucent");
+      addShade(graph, frame.shade, shadeUniforms, shaders, gbuffer, light, target);
+    }
     graph.want(target);
     return gbuffer;
+  }
+
+  // What is opaque, and the layers of translucent surfaces over it.
+  void addShadeUnderLayers(FrameGraph& graph, const Frame& frame, const Tile& tile, glm::vec2 sampleShift,
+                           const GBufferRefs& gbuffer, const LightRefs& light, TextureRef target) {
+    graph.leaveOut("methods but lists", "a surface is translucent, and only lists draws layers");
+    ShadeSettings opaque = frame.shade;
+    opaque.final = false;
+    const TextureRef below = graph.create("light", {gl::TextureFormat::rgba32f, tile.width, tile.height});
+    addShade(graph, opaque, shadeUniforms, shaders, gbuffer, light, below);
+    const SurfaceLayerRefs layers =
+        surfaces.addLayers(graph, shaders, {frame.view, primitives->origin, tile, sampleShift, gbuffer, {}});
+    addTranslucent(graph, frame.shade, shadeUniforms, shaders, layers, below, target);
   }
 
   void drawShadowMap(Frame& frame);
@@ -252,7 +281,9 @@ void Renderer::Impl::drawShadowMap(Frame& frame) {
   FrameGraph graph(pool);
   GBufferRefs gbuffer;
   gbuffer.depth = graph.import("shadow map", *frame.shadowMapTexture, Clear::zero);
-  addScene(graph, light, whole, {0, 0}, gbuffer, "shadow map: ");
+  addScene(graph, light, whole, {0, 0}, gbuffer, frame.translucent ? Surfaces::apart : Surfaces::opaque,
+           "shadow map: ");
+  if (frame.translucent) graph.leaveOut("pass shadow map: surface", "what is translucent casts no shadow");
   graph.want(gbuffer.depth);
   execute(graph);
   frame.shadowMap = {light, frame.shadowMapTexture.get()};
@@ -279,7 +310,13 @@ void Renderer::Impl::drawOcclusion(Frame& frame) {
   double spent = 0;
   {
     Stopwatch watch(spent);
-    occlusionBuffers.set(frame.view, drawOcclusionMaps(*primitives, frame.view, frame.settings.occlusion));
+    std::shared_ptr<const Primitives> occluders = primitives;
+    if (frame.translucent) {  // what is translucent occludes nothing
+      auto opaque = std::make_shared<Primitives>(*primitives);
+      opaque->surfaces.clear();
+      occluders = std::move(opaque);
+    }
+    occlusionBuffers.set(frame.view, drawOcclusionMaps(*occluders, frame.view, frame.settings.occlusion));
   }
   auto pass = std::find_if(stats.passes.begin(), stats.passes.end(),
                            [](const PassStats& s) { return s.name == "occlusion maps"; });
@@ -294,7 +331,7 @@ void Renderer::Impl::drawData(const Frame& frame, const Tile& tile, LayerTexels&
   setView(frame.view, tile, {0, 0});
   FrameGraph graph(pool);
   const GBufferRefs gbuffer = createGBuffer(graph, tile.width, tile.height);
-  addScene(graph, frame.view, tile, {0, 0}, gbuffer);
+  addScene(graph, frame.view, tile, {0, 0}, gbuffer, Surfaces::opaque);
   if (!frame.layers.color) graph.leaveOut("pass shade", "no colour is wanted");
   wantLayers(graph, frame.layers, gbuffer);
   execute(graph);
@@ -305,7 +342,7 @@ void Renderer::Impl::drawData(const Frame& frame, const Tile& tile, LayerTexels&
 void Renderer::Impl::drawTile(const Frame& frame, const Tile& part, const gl::Texture& picture,
                               LayerTexels& texels, const std::function<void(double)>& progress) {
   const Tile tile = withMargin(part, frame.margin, frame.view.size);
-  const bool dataApart = !frame.shade.final || tile != part;
+  const bool dataApart = !frame.shade.final || tile != part || frame.translucent;
   if (frame.settings.depthUnsharp.mode != UnsharpMode::off) unsharpUniforms.set(frame.unsharp, tile);
   if (frame.layers.data() && dataApart) drawData(frame, part, texels);
   const int samples = frame.settings.samples;
@@ -353,17 +390,19 @@ void Renderer::renderPicture(const View& view, const Lighting& lighting, const B
   Frame frame{view,
               settings,
               {lighting, background, settings.occlusion, settings.fog, settings.depthUnsharp, settings.lines,
-               settings.samples == 1, layout.format != PixelFormat::rgbaFloat},
+               settings.surface.opacity, settings.samples == 1, layout.format != PixelFormat::rgbaFloat},
               layout.layers,
               {}};
   const bool color = layout.layers.color;
+  frame.translucent = settings.surface.translucent() && !r.primitives->surfaces.empty();
+  const bool anyOpaque = !r.primitives->empty() && !(frame.translucent && r.primitives->onlySurfaces());
   if (color) r.setEffects(frame);
   r.shadeUniforms.set(frame.shade);
-  if (color && settings.shadows.mode != ShadowMode::off && !r.primitives->empty()) {
+  if (color && settings.shadows.mode != ShadowMode::off && anyOpaque) {
     Stopwatch watch(r.stats.drawMs);
     r.drawShadowMap(frame);
   }
-  if (color && settings.occlusion.on && !r.primitives->empty()) {
+  if (color && settings.occlusion.on && anyOpaque) {
     Stopwatch watch(r.stats.drawMs);
     r.drawOcclusion(frame);
   }
@@ -439,7 +478,7 @@ HitImage Renderer::renderHits(const View& view, HitChannels channels, const Surf
       r.setView(view, tile, {0, 0});
       FrameGraph graph(r.pool);
       const GBufferRefs gbuffer = createGBuffer(graph, tile.width, tile.height);
-      r.addScene(graph, view, tile, {0, 0}, gbuffer);
+      r.addScene(graph, view, tile, {0, 0}, gbuffer, Surfaces::opaque);
       graph.leaveOut("pass shade", "no colour is wanted");
       const auto fetch = [&](TextureRef ref, auto* out, std::size_t perPixel) {
         const std::size_t first =
@@ -461,6 +500,41 @@ HitImage Renderer::renderHits(const View& view, HitChannels channels, const Surf
         encoded[i] == 0 && encoded[i + 1] == 0;  // cleared; no normal towards the viewer is stored so
     image.normal.push_back(miss ? glm::vec3(0.0f)
                                 : f32::decodeNormal(glm::vec2(encoded[i], encoded[i + 1]) / 65535.0f));
+  }
+  return image;
+}
+
+SurfaceLayerImage Renderer::renderLayers(const View& view, const SurfaceSettings& surface) {
+  MENISCUS_CHECK(surface.translucent());
+  Impl& r = *impl_;
+  r.prepare(QuadricMethod::automatic, surface);
+  const Tile tile{0, 0, view.size.width, view.size.height};
+  const std::size_t pixels = static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
+  r.setView(view, tile, {0, 0});
+  FrameGraph graph(r.pool);
+  const GBufferRefs gbuffer = createGBuffer(graph, tile.width, tile.height);
+  r.addScene(graph, view, tile, {0, 0}, gbuffer, Surfaces::apart);
+  const SurfaceLayerRefs layers =
+      r.surfaces.addLayers(graph, r.shaders, {view, r.primitives->origin, tile, {0, 0}, gbuffer, {}});
+  for (const TextureRef& layer : layers.of) graph.want(layer);
+  r.execute(graph);
+  SurfaceLayerImage image;
+  std::vector<glm::uvec4> texels(pixels);
+  for (std::size_t i = 0; i < layers.of.size(); ++i) {
+    graph.texture(layers.of[i]).read(tile.width, tile.height, tile.width, texels.data());
+    if (i == image.layers.size()) {
+      for (const glm::uvec4& texel : texels) image.rest.push_back(texel.w);
+      continue;
+    }
+    HitImage& hits = image.layers[i];
+    hits.size = view.size;
+    for (const glm::uvec4& texel : texels) {
+      const bool miss = texel.w == 0;
+      const glm::vec2 normal(static_cast<float>(texel.y & 0xFFFFu), static_cast<float>(texel.y >> 16));
+      hits.distance.push_back(miss ? std::numeric_limits<float>::infinity() : std::bit_cast<float>(texel.z));
+      hits.normal.push_back(miss ? glm::vec3(0.0f) : f32::decodeNormal(normal / 65535.0f));
+      hits.id.push_back(texel.w);
+    }
   }
   return image;
 }

@@ -1,9 +1,12 @@
 #pragma once
 // Draws Primitives as seen from a View. buildFrame() in renderer.cpp reads as the list of passes.
 
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <vector>
 
 #include "core/hit_image.h"
 #include "core/image.h"
@@ -26,6 +29,12 @@ struct HitChannels {
   bool distance = true, normal = false, id = true;
 };
 
+/// Where rays cross translucent surfaces, in front of what is opaque.
+struct SurfaceLayerImage {
+  std::array<HitImage, 4> layers;   ///< the first, second, ... crossing
+  std::vector<std::uint32_t> rest;  ///< how many more there are, row by row
+};
+
 /// Needs a current OpenGL 4.5 core context for its whole life.
 class Renderer {
  public:
@@ -45,6 +54,10 @@ class Renderer {
   /// Draws what the rays through the pixels' centres meet: no shading, nothing that was not asked for.
   HitImage renderHits(const View& view, HitChannels channels, const SurfaceSettings& surface = {},
                       QuadricMethod quadrics = QuadricMethod::automatic);
+
+  /// Draws the layers of translucent surfaces (`surface.opacity` below 1) alone, up to the largest target of
+  /// the driver.
+  SurfaceLayerImage renderLayers(const View& view, const SurfaceSettings& surface);
 
   RenderStats stats() const;
   /// Counts and times start anew.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/error.h"
@@ -24,9 +25,17 @@ std::span<const SurfaceMethodInfo> surfaceMethods() {
 
 const SurfaceMethodInfo& surfaceMethodFor(const SurfaceSettings& settings) {
   const std::span<const SurfaceMethodInfo> methods = surfaceMethods();
-  if (settings.method == "auto") return methods.front();
+  const auto suits = [&](const SurfaceMethodInfo& method) {
+    return method.translucent || !settings.translucent();
+  };
+  if (settings.method == "auto") return *std::find_if(methods.begin(), methods.end(), suits);
   std::string names = "auto";
   for (const SurfaceMethodInfo& method : methods) {
+    if (method.name == settings.method && !suits(method))
+      throw UsageError(
+          fmt::format("--opacity: the method {} draws opaque surfaces only; leave out "
+                      "--surface-method or give lists",
+                      method.name));
     if (method.name == settings.method) return method;
     names += fmt::format(", {}", method.name);
   }

@@ -52,6 +52,18 @@ void SurfacePasses::add(FrameGraph& graph, ShaderLibrary& shaders, const Surface
   for (const auto& method : methods_) method->addPasses(graph, shaders, target);
 }
 
+SurfaceLayerRefs SurfacePasses::addLayers(FrameGraph& graph, ShaderLibrary& shaders, SurfaceTarget target) {
+  target.layers = {};
+  for (const auto& method : methods_) {
+    target.layersBefore = target.layers;
+    for (TextureRef& layer : target.layers.of)
+      layer =
+          graph.create("surface layer", {gl::TextureFormat::rgba32ui, target.tile.width, target.tile.height});
+    method->addPasses(graph, shaders, target);
+  }
+  return target.layers;
+}
+
 void SurfacePasses::takeStats(std::vector<SurfaceStats>& stats) {
   for (const auto& method : methods_) {
     const SurfaceStats taken = method->takeStats();

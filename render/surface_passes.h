@@ -17,6 +17,9 @@ class SurfacePasses {
   void clear();
   /// Adds the passes of all surfaces; notes in the graph if there are none.
   void add(FrameGraph& graph, ShaderLibrary& shaders, const SurfaceTarget& target);
+  /// Adds the passes that write `target.layers` instead: of all surfaces together, each joining what those
+  /// before it wrote. Returns what the last one writes; not valid if there are none.
+  SurfaceLayerRefs addLayers(FrameGraph& graph, ShaderLibrary& shaders, SurfaceTarget target);
   /// Adds what was counted since the last call.
   void takeStats(std::vector<SurfaceStats>& stats);
   std::vector<ResourceStats> buffers() const;

@@ -14,7 +14,7 @@ namespace meniscus {
 
 namespace {
 
-// Layout of ShadeUniforms in shaders/post/shade.frag.
+// Layout of ShadeUniforms in shaders/include/lighting.glsl.
 struct ShadeBlock {
   glm::vec4 key, fill, ambient, backdrop, fog, line, unsharp;
   std::array<glm::vec4, 256> linear;
@@ -48,10 +48,11 @@ glm::vec4 fogOf(const FogSettings& fog) {
   return glm::vec4(glm::dvec4(fog.strength, fog.start, 1.0 / (fog.end - fog.start), 0.0));
 }
 
-glm::vec4 unsharpOf(const DepthUnsharpSettings& unsharp) {
+glm::vec4 unsharpOf(const ShadeSettings& settings) {
   constexpr double kUnlimited = 1e6;
-  return glm::vec4(
-      glm::dvec4(unsharp.strength, unsharp.mode == UnsharpMode::halo ? 0.0 : kUnlimited, 0.0, 0.0));
+  const DepthUnsharpSettings& unsharp = settings.depthUnsharp;
+  return glm::vec4(glm::dvec4(unsharp.strength, unsharp.mode == UnsharpMode::halo ? 0.0 : kUnlimited,
+                              settings.surfaceOpacity, 0.0));
 }
 
 }  // namespace
@@ -70,7 +71,7 @@ void ShadeUniforms::set(const ShadeSettings& settings) {
       backdrop(settings.background),
       fogOf(settings.fog),
       linearColor(settings.lines.color, settings.lines.strength),
-      unsharpOf(settings.depthUnsharp),
+      unsharpOf(settings),
       linearTable()};
   buffer_.update(&block);
 }

@@ -17,8 +17,9 @@ struct ShadeSettings {
   FogSettings fog;
   DepthUnsharpSettings depthUnsharp;
   SilhouetteSettings lines;
-  bool final = false;       ///< writes the picture itself; otherwise adds a sample to a sum (resolve.h)
-  bool encodeSrgb = false;  ///< of the picture
+  double surfaceOpacity = 1;  ///< of translucent surfaces (translucent.h)
+  bool final = false;         ///< writes the picture itself; otherwise adds a sample to a sum (resolve.h)
+  bool encodeSrgb = false;    ///< of the picture
 };
 
 /// A buffer for the pass's uniforms, which outlives the frames.
@@ -40,7 +41,7 @@ struct LightRefs {
   TextureRef lines;       ///< share of the pixel that is line (silhouette.h)
 };
 
-/// Adds the pass; it draws into `target`, an imported texture.
+/// Adds the pass; it draws into `target`.
 void addShade(FrameGraph& graph, const ShadeSettings& settings, const ShadeUniforms& uniforms,
               ShaderLibrary& shaders, const GBufferRefs& gbuffer, const LightRefs& light, TextureRef target);
 

@@ -26,6 +26,7 @@ struct Layers {
   uint count;
 };
 Layers gLayers;
+uint gNode = 0u;  // of the pixel's list, for surfaceAt(): crossings come in order
 
 void beginLayers(ivec2 texel) {
   for (int i = 0; i < kLayers; ++i) gLayers.layer[i] = uvec4(0u);
@@ -83,7 +84,8 @@ void endLayers() {
 void addCrossing(ivec2 texel, uint head, SceneRay ray, Split place, bool inside) {
   float depth = depthValue(uView, heightOf(ray, place));
   if (!(depth > texelFetch(tDepth, texel, 0).r) || depth > 1.0) return;
-  FieldSurface s = surfaceAt(head, ray, place);
+  if (gNode == 0u) gNode = head;
+  FieldSurface s = surfaceAt(gNode, ray, place);
   addLayer(uvec4(blendedColor(s), packUnorm2x16(encodeNormal(normalTowards(s, ray, inside))),
                  floatBitsToUint(distanceAlong(ray, place)), max(s.id, 1u)));
 }

@@ -133,8 +133,8 @@ void shiftPowers(inout Polygon p, float step) {
   }
 }
 
-// Bounds on [0, size] of a polynomial in powers: the least and the largest of its Bernstein coefficients.
-vec2 rangeOf(Polygon p, float size) {
+// Bernstein form on [0, size] of a polynomial in powers.
+Polygon bernsteinOf(Polygon p, float size) {
   float power = 1.0, binomial = 1.0;
   for (int k = 1; k <= kMostDegree; ++k) {
     power *= size;
@@ -146,6 +146,11 @@ vec2 rangeOf(Polygon p, float size) {
       if (k >= n) p.c[k] += p.c[k - 1];
     }
   }
+  return p;
+}
+
+// The least and the largest coefficient.
+vec2 rangeOf(Polygon p) {
   vec2 range = vec2(p.c[0]);
   for (int k = 1; k <= kMostDegree; ++k) range = vec2(min(range.x, p.c[k]), max(range.y, p.c[k]));
   return range;

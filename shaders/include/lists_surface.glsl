@@ -1,12 +1,15 @@
 // What the surface is like at a place, from the balls of the pixel's list that reach there. Needs
 // include/field.glsl, include/lists.glsl, include/lists_nodes.glsl.
 
-FieldSurface surfaceAt(uint head, SceneRay ray, Split place) {
+// from: a node of the list, none of whose balls before it reaches there; moved on to the first that the ray
+// has not left at the place.
+FieldSurface surfaceAt(inout uint from, SceneRay ray, Split place) {
   FieldSurface s = emptyFieldSurface();
   float slant = slantOf(ray), until = place.hi + 1e-6 * abs(place.hi);
-  uint nearest = uNodes[head - 1u].x;
+  uint nearest = uNodes[from - 1u].x;
   float most = -1e30;
-  for (uint node = head; node != 0u;) {
+  bool passing = true;
+  for (uint node = from; node != 0u;) {
     uvec2 n = uNodes[node - 1u];
     if (firstPlace(n.x, slant) > until) break;
     Ball ball = fetchBall(n.x);
@@ -23,6 +26,8 @@ FieldSurface surfaceAt(uint head, SceneRay ray, Split place) {
       addToSurface(s, ball, ray, b, along);
     }
     node = n.y;
+    passing = passing && along > 0.0 && w < 0.0 && node != 0u;
+    if (passing) from = node;
   }
   if (s.id == 0u) addToSurface(s, uBalls[nearest], ray, place);  // rounding: its very end
   return s;

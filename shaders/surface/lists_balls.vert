@@ -13,10 +13,10 @@ layout(location = 3) flat out uint vBall;
 layout(location = 4) flat out vec2 vShare;  // coefficient, 1/R^2
 
 layout(binding = 5) uniform sampler2D tBalls;
-layout(location = 0) uniform ivec2 uBalls;  // the first, and the step to the next
+layout(location = 0) uniform ivec2 uFirst;  // the first, and the step to the next
 
 void main() {
-  uint ball = uint(uBalls.x + uBalls.y * gl_InstanceID);
+  uint ball = uint(uFirst.x + uFirst.y * gl_InstanceID);
   ivec2 at = ivec2(4u * (ball % 1024u), ball / 1024u);
   vPixel = texelFetch(tBalls, at, 0);
   vPlace = texelFetch(tBalls, at + ivec2(1, 0), 0);

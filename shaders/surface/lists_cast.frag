@@ -3,8 +3,8 @@
 // Ray casting of a pixel's list (Szécsi and Illés 2012, §6): separators are kept in order in a local array;
 // those that no ball still to come can precede are safe, and are taken out one by one, each changing the
 // running polynomial, which says whether the piece up to the next can cross the surface at all. Where it can,
-// the piece's polynomial is summed up anew from the balls that the ray is in. Places are relative to the
-// first ball of the pixel, the running polynomial to the last separator.
+// an exact piece is summed up anew from the balls that the ray is in; cubics are solved as they are. Places
+// are relative to the first ball of the pixel, the running polynomial to the last separator.
 #include "include/view.glsl"
 #include "include/ball_ray.glsl"
 #include "shared/metaball.glsl"
@@ -61,6 +61,7 @@ bool takeBall(uint index, SceneRay ray, Split base, float begin) {
   return true;
 }
 
+#ifndef CUBIC
 // The balls that the ray is in between two places that no separator lies between.
 Polygon sumExactly(float from, float to, out float leastR2) {
   Polygon sum = constantPolygon(-uField.x);
@@ -73,23 +74,28 @@ Polygon sumExactly(float from, float to, out float leastR2) {
   }
   return sum;
 }
+#endif
 
 #ifdef RUNNING
 Polygon gRunning;
-float gAt;      // the place that it is relative to
-float gTrust;   // beyond it rounding may have spoiled it
-float gWeight;  // what its terms are of the size of
+float gAt;       // the place that it is relative to
+float gTrust;    // beyond it rounding may have spoiled it
+float gWeight;   // what its terms are of the size of
+float gLeastR2;  // of the balls that changed it
 
 void clearRunning() {
   gRunning = constantPolygon(0.0);
   gTrust = 1e30;
   gWeight = 0.0;
+  gLeastR2 = 1e30;
 }
 
 // Terms grow with the power of the distance from where they were added: a support away they are still right
 // to a few roundings of the field.
 void trustFor(Separator s, float now) {
-  if (s.y != 0.0) gTrust = min(gTrust, now + inversesqrt(s.w));
+  if (s.y == 0.0) return;
+  gTrust = min(gTrust, now + inversesqrt(s.w));
+  gLeastR2 = min(gLeastR2, 1.0 / s.w);
 }
 
 void moveRunning(float now) {
@@ -116,14 +122,20 @@ void changeRunning(Separator s, float now) {
   if (s.y > 0.0) gWeight += abs(s.z);
 }
 
-// Whether the field surely keeps its sign.
-bool keepsSign(float now, float to, bool inside) {
+Polygon runningBetween(float now, float to) {
   moveRunning(now);
   if (to > gTrust) renewRunning(now, to);
-  vec2 range = rangeOf(gRunning, to - now) - uField.x;
+  return bernsteinOf(gRunning, to - now);
+}
+
+#ifndef CUBIC
+// Whether the field surely keeps its sign.
+bool keepsSign(float now, float to, bool inside) {
+  vec2 range = rangeOf(runningBetween(now, to)) - uField.x;
   float margin = 2e-5 * gWeight + 1e-6 * uField.x;
   return inside ? range.x > margin : range.y < -margin;
 }
+#endif
 #else
 // The same from each ball's largest share.
 bool keepsSign(float now, float to, bool inside) {
@@ -154,11 +166,19 @@ bool search(inout Trace trace, int within, float now, float to, ivec2 texel, uin
     return crossAt(trace, texel, head, ray, placeAt(base, now));  // rounding: the last ball's very end
   }
   ++trace.pieces;
+#ifndef CUBIC
   if (trace.known && keepsSign(now, to, trace.inside)) return false;
+#endif
   bool crossedHere = false;
   for (int i = 0; i <= kMostDegree && to > now; ++i) {
     float leastR2, at;
+#ifdef CUBIC
+    Polygon sum = runningBetween(now, to);
+    for (int k = 0; k <= kMostDegree; ++k) sum.c[k] -= uField.x;
+    leastR2 = gLeastR2;
+#else
     Polygon sum = sumExactly(now, to, leastR2);
+#endif
     if (!findCrossing(trace, sum, to - now, leastR2, crossedHere, at)) return false;
     now += at * (to - now);
     if (crossAt(trace, texel, head, ray, placeAt(base, now))) return true;

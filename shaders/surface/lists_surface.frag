@@ -21,7 +21,8 @@ void main() {
   SceneRay ray = sceneRay(gl_FragCoord.xy + uView.tile.xy);
   vec2 stored = texelFetch(tPlace, texel, 0).rg;
   Split place = makeSplit(stored.x, stored.y);
-  FieldSurface s = surfaceAt(head & kFirstNode, ray, place);
+  uint node = head & kFirstNode;
+  FieldSurface s = surfaceAt(node, ray, place);
   writeSurface(depthValue(uView, heightOf(ray, place)), normalTowards(s, ray, (head & kInside) != 0u),
                blendedColor(s), max(s.id, 1u), distanceAlong(ray, place));
 }

@@ -63,6 +63,18 @@ TEST_F(RenderSurface, takesPartInTheEffects) {
   EXPECT_NE(render("c60.pdb", surface(two)).pixels, render("c60.pdb", surface(shadows)).pixels);
 }
 
+TEST_F(RenderSurface, canBeSeenThrough) {
+  const std::vector<std::string> shown{"--show", "(REA)=spacefill", "--focus", "(REA)"};
+  std::vector<std::string> seen = surface({"--opacity", "0.3"}), hidden = surface();
+  for (std::vector<std::string>* options : {&seen, &hidden})
+    options->insert(options->end(), shown.begin(), shown.end());
+  EXPECT_NE(render("1cbs.cif.gz", seen).pixels, render("1cbs.cif.gz", hidden).pixels);
+  const nlohmann::json json = stats("1cbs.cif.gz", seen);
+  EXPECT_EQ(json.at("surfaces").at(0).at("method"), "lists") << "whatever auto takes else";
+  EXPECT_GT(json.at("surfaces").at(0).at("details").at("most bytes per pixel"), 20);
+  EXPECT_NE(json.at("omissions").dump().find("only lists draws layers"), std::string::npos);
+}
+
 TEST_F(RenderSurface, isWritten) {
   const Picture layers = render("c60.pdb", surface({"--channels", "distance,id,normal,depth"}), "out.exr");
   EXPECT_EQ(layers.channels, 6);
@@ -103,6 +115,8 @@ TEST_F(RenderSurface, saysWhatIsWrong) {
               {"--surface-option", "speed", "tolerance"});
   expectUsage({"--surface-method", "bezier", "--surface-option", "tolerance=2"},
               {"--surface-option", "tolerance=2", "from"});
+  expectUsage({"--opacity", "1.5"}, {"--opacity", "1.5"});
+  expectUsage({"--opacity", "0.5", "--surface-method", "tiles"}, {"--opacity", "tiles", "lists"});
   expectUsage({"--surface-option", "speed"}, {"--surface-option", "NAME=NUMBER"});
   expectUsage({"--show", "(HEM)"}, {"--show", "CID=REPRESENTATION"});
   expectUsage({"--show", "//A/x/y/z/w=licorice"}, {"--show"});
@@ -113,7 +127,7 @@ TEST_F(RenderSurface, saysWhatIsWrong) {
 TEST_F(RenderSurface, isExplainedInTheHelp) {
   const std::string help = run({"render", "--help"}).out;
   for (const char* part :
-       {"--blend", "--kernel", "--level", "--surface-method", "--surface-option", "--show"})
+       {"--blend", "--kernel", "--level", "--opacity", "--surface-method", "--surface-option", "--show"})
     EXPECT_NE(help.find(part), std::string::npos) << part;
 }
 
