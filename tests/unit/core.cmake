@@ -5,3 +5,6 @@ meniscus_test(NAME core_test LABEL unit
 meniscus_test(NAME tiles_test LABEL unit SOURCES tiles_test.cpp ${PROJECT_SOURCE_DIR}/tests/support/scenes.cpp
               LIBRARIES meniscus_core)
 meniscus_test(NAME field_tiles_test LABEL unit SOURCES field_tiles_test.cpp LIBRARIES meniscus_core)
+meniscus_test(NAME surface_mesh_test LABEL unit SOURCES surface_mesh_test.cpp LIBRARIES meniscus_core)
+find_package(assimp REQUIRED)  # an outside opinion on the files
+meniscus_test(NAME mesh_file_test LABEL unit SOURCES mesh_file_test.cpp LIBRARIES meniscus_io assimp::assimp)
