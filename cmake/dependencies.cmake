@@ -6,6 +6,7 @@ find_package(fmt REQUIRED)        # libfmt-dev
 find_package(nlohmann_json REQUIRED)   # nlohmann-json3-dev
 find_package(CLI11 REQUIRED)      # libcli11-dev
 find_package(TBB REQUIRED)        # libtbb-dev: core/tiles on all processors
+find_package(TinyGLTF CONFIG REQUIRED)  # libtinygltf-dev: surfaces as .glb
 find_package(hwy REQUIRED)        # libhwy-dev: vectors of the instruction set that the processor has
 
 find_path(GEMMI_INCLUDE_DIR gemmi/mmread.hpp REQUIRED)  # gemmi-dev: header only in 0.5
