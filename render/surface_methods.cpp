@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "render/surface/bezier.h"
 #include "render/surface/lists.h"
+#include "render/surface/mesh.h"
 #include "render/surface/tiles.h"
 #include "render/surface_method.h"
 
@@ -19,6 +20,7 @@ std::span<const SurfaceMethodInfo> surfaceMethods() {
       {"bezier", "depth-peeled Bezier clipping (Kanamori, Szego and Nishita 2008)", bezierParameters(),
        makeBezier},
       {"lists", "fragment lists (Szecsi and Illes 2012)", listsParameters(), makeLists, true},
+      {"mesh", "triangles by marching cubes; as exact as --mesh-spacing is fine", meshParameters(), makeMesh},
   };
   return kMethods;
 }
