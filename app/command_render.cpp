@@ -22,8 +22,10 @@
 #include "core/camera_fit.h"
 #include "core/displacement.h"
 #include "core/error.h"
+#include "core/mesh/surface_mesh.h"
 #include "core/primitives.h"
 #include "io/image_writer.h"
+#include "io/mesh_file.h"
 #include "io/output_file.h"
 #include "render/renderer.h"
 
@@ -50,7 +52,10 @@ class TimedSink : public RowSink {
 class RenderRun {
  public:
   explicit RenderRun(const RenderOptions& options)
-      : options_(options), pattern_(options.output), progress_(!options.quiet) {
+      : options_(options),
+        pattern_(options.output.empty() ? options.exportMesh : options.output),
+        exportPattern_(options.exportMesh),
+        progress_(!options.quiet) {
     report_.size = options.size;
     report_.samples = options.samples;
   }
@@ -67,14 +72,16 @@ class RenderRun {
   SceneObject objectFor(std::shared_ptr<const Molecule> molecule) const;
   Objects objectsFor(const std::string& file, const std::shared_ptr<const Molecule>& molecule) const;
   Camera cameraFor(const std::string& file, const std::vector<Objects>& models) const;
-  void drawPicture(const std::string& file, const std::string& output, Scene scene);
+  void drawPicture(const std::string& file, int model, Scene scene);
+  void exportMesh(const std::string& output, const Primitives& primitives);
   ImageFileOptions imageOptionsFor(const std::string& file, const std::string& output,
                                    const Scene& scene) const;
   Renderer& renderer();
   void finishReport();
 
   const RenderOptions& options_;
-  OutputPattern pattern_;
+  OutputPattern pattern_;  // of pictures, or of meshes if there are none
+  OutputPattern exportPattern_;
   Progress progress_;
   RunReport report_;
   std::unique_ptr<Context> context_;
@@ -118,8 +125,20 @@ void RenderRun::checkBeforeReading() const {
       throw UsageError(fmt::format("{}: {}", option, error.what()));
     }
   }
-  if (!pattern_.namesModel())
-    for (const std::string& file : options_.files) requireWritable(pattern_.nameFor(file, 1));
+  if (!options_.exportMesh.empty()) {
+    requireDistinctOutputs(exportPattern_, options_.files);
+    if (exportPattern_.namesModel() != pattern_.namesModel())
+      throw UsageError(
+          "--export: put {model} into the names of the picture and of the mesh, or into neither");
+    if (!draws(Representation::surface))
+      throw UsageError("--export: nothing is drawn as a surface; add --representation surface");
+  }
+  if (!pattern_.namesModel()) {
+    for (const std::string& file : options_.files) {
+      requireWritable(pattern_.nameFor(file, 1));
+      if (!options_.exportMesh.empty()) requireWritable(exportPattern_.nameFor(file, 1));
+    }
+  }
   if (!options_.statsFile.empty()) requireWritable(options_.statsFile);
 }
 
@@ -135,7 +154,7 @@ void RenderRun::renderFile(const std::string& file) {
   if (!pattern_.namesModel()) {
     for (Objects& objects : models)
       std::move(objects.begin(), objects.end(), std::back_inserter(scene.objects));
-    drawPicture(file, pattern_.nameFor(file, molecules.front()->model), std::move(scene));
+    drawPicture(file, molecules.front()->model, std::move(scene));
     return;
   }
   std::set<std::string> outputs;
@@ -146,9 +165,9 @@ void RenderRun::renderFile(const std::string& file) {
                     "choose one with --model",
                     file));
   for (Objects& objects : models) {
-    const std::string output = pattern_.nameFor(file, objects.front().molecule->model);
+    const int model = objects.front().molecule->model;
     scene.objects = std::move(objects);
-    drawPicture(file, output, scene);
+    drawPicture(file, model, scene);
   }
 }
 
@@ -297,7 +316,27 @@ Camera RenderRun::cameraFor(const std::string& file, const std::vector<Objects>&
   return fitted(camera, options_.size, spheres);
 }
 
-void RenderRun::drawPicture(const std::string& file, const std::string& output, Scene scene) {
+// Of each object that is drawn so, in the order of the scene.
+void RenderRun::exportMesh(const std::string& output, const Primitives& primitives) {
+  const Timed timed(report_.meshSeconds);
+  MeshOptions mesh;
+  mesh.spacing = options_.meshSpacing.value_or(mesh.spacing);
+  std::vector<SurfaceMesh> surfaces;
+  std::size_t triangles = 0;
+  for (const MetaballField& field : primitives.surfaces) {
+    surfaces.push_back(meshSurface(field, mesh));
+    triangles += surfaces.back().triangles.size();
+  }
+  if (triangles == 0)
+    throw InputError(
+        fmt::format("cannot write '{}': the field nowhere reaches the level, so there is no "
+                    "surface; give a smaller --level or --mesh-spacing",
+                    output));
+  writeMeshFile(output, surfaces, primitives.origin);
+}
+
+void RenderRun::drawPicture(const std::string& file, int model, Scene scene) {
+  const std::string output = options_.output.empty() ? "" : pattern_.nameFor(file, model);
   PictureReport picture;
   picture.input = file;
   picture.output = output;
@@ -308,8 +347,12 @@ void RenderRun::drawPicture(const std::string& file, const std::string& output, 
     picture.atoms += counted->atomCount();
     picture.bonds += counted->bonds.size();
   }
-  const ImageFileOptions imageOptions = imageOptionsFor(file, output, scene);
-  const std::unique_ptr<ImageFile> image = ImageFile::create(output, imageOptions);
+  ImageFileOptions imageOptions;
+  std::unique_ptr<ImageFile> image;
+  if (!output.empty()) {
+    imageOptions = imageOptionsFor(file, output, scene);
+    image = ImageFile::create(output, imageOptions);
+  }
   std::shared_ptr<const Primitives> primitives;
   {
     const Timed timed(report_.primitivesSeconds);
@@ -320,6 +363,9 @@ void RenderRun::drawPicture(const std::string& file, const std::string& output, 
   picture.cylinders = primitives->cylinders.size();
   picture.ellipsoids = primitives->ellipsoids.size();
   for (const MetaballField& field : primitives->surfaces) picture.metaballs += field.balls.size();
+
+  if (!options_.exportMesh.empty()) exportMesh(exportPattern_.nameFor(file, model), *primitives);
+  if (output.empty()) return;
 
   const View view = makeView(scene.camera, options_.size, primitives->bounds());
   RenderSettings settings;

@@ -74,7 +74,8 @@ void explainTimes(const RunReport& report, std::string& text) {
                                                   {"compile", report.render.compileMs},
                                                   {"draw", drawMs(report)},
                                                   {"read back", report.render.readbackMs},
-                                                  {"encode", report.encodeSeconds * 1000}};
+                                                  {"encode", report.encodeSeconds * 1000},
+                                                  {"export", report.meshSeconds * 1000}};
   text += "\nTime\n";
   double rest = report.totalSeconds * 1000;
   for (const auto& [name, ms] : parts) {

@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/render_settings.h"
 #include "io/image_writer.h"
+#include "io/mesh_file.h"
 #include "io/output_file.h"
 #include "render/surface_method.h"
 
@@ -28,8 +29,8 @@ constexpr const char* kExamples =
     "      --carbons chain --focus '(HEM)' --size 1920x1080 --background transparent\n"
     "  meniscus render models/*.pdb -o 'pictures/{stem}-{model}.png' --model all --color rainbow\n";
 
-constexpr std::array<std::string_view, 8> kNotForThePicture{"output",  "stats",    "explain",    "quiet",
-                                                            "backend", "quadrics", "shader-dir", "help"};
+constexpr std::array<std::string_view, 9> kNotForThePicture{
+    "output", "stats", "explain", "quiet", "backend", "quadrics", "shader-dir", "help", "export"};
 
 std::string shellQuoted(const std::string& text) {
   const auto plain = [](char c) {
@@ -189,6 +190,14 @@ void addSurfaceOptions(CLI::App& app, RenderOptions& o) {
                  const auto [name, value] = parseSurfaceOption(n, v);
                  o.surface.parameters[name] = value;
                });
+  group.value("--mesh-spacing", "S",
+              "Side of a cube of the mesh's grid in Angstrom, 0.1 to 4, of\n"
+              "--surface-method mesh and of --export [0.5]",
+              [&o](auto& n, auto& v) { o.meshSpacing = parseNumber(n, v, 0.1, 4, "Angstrom"); });
+  group.value("--export", "MESH",
+              "Write the surface as polygons, .ply or .glb, with the atoms'\n"
+              "colours; names as those of pictures. -o may then be left out",
+              [&o](auto&, auto& v) { o.exportMesh = v; });
 }
 
 // What the styles stand for, a line each.
@@ -361,14 +370,19 @@ void addOtherOptions(CLI::App& app, RenderOptions& o) {
 void requireConsistent(const CLI::App& app, RenderOptions& o) {
   if (o.files.empty())
     throw UsageError("no input; give a structure file, as in meniscus render FILE -o OUT.png");
-  if (o.output.empty()) throw UsageError("no output; add the picture's name, as in -o picture.png");
+  if (o.output.empty() && o.exportMesh.empty())
+    throw UsageError("no output; add the picture's name, as in -o picture.png");
   if (std::filesystem::is_directory(o.output)) requireWritable(o.output);  // says that it is a folder
+  if (!o.exportMesh.empty()) requireMeshName("--export", o.exportMesh);
   if (!(o.fog.start < o.fog.end))
     throw UsageError("--fog-start: must be less than --fog-end (they are 0.2 and 1 unless given)");
+  if (o.meshSpacing && o.surface.method == "mesh") o.surface.parameters["spacing"] = *o.meshSpacing;
+  if (o.meshSpacing && o.surface.method != "mesh" && o.exportMesh.empty())
+    throw UsageError("--mesh-spacing: there is no mesh; add --surface-method mesh or --export FILE.ply");
   if (o.surface.parameters.size() > 0 || o.surface.method != "auto" || o.surface.translucent())
     surfaceParametersFor(surfaceMethodFor(o.surface), o.surface);  // throws if it has no such parameter
-  const ImageType type = imageTypeOf(o.output);
-  if (type == ImageType::exr && app.count("--depth") > 0)
+  const ImageType type = o.output.empty() ? ImageType::exr : imageTypeOf(o.output);
+  if (type == ImageType::exr && !o.output.empty() && app.count("--depth") > 0)
     throw UsageError(
         "--depth: is for PNG; OpenEXR pictures are floating point (depth as a layer: --channels depth)");
   if (type != ImageType::exr && o.layers != Layers{})

@@ -30,7 +30,9 @@ struct RenderOptions {
   double probability = 0.5;                      ///< of displacement ellipsoids, see SceneObject
   SurfaceShape surfaceShape;
   SurfaceSettings surface;
-  std::vector<ShownApart> shown;  ///< drawn in another way; of several that name an atom the last has it
+  std::string exportMesh;             ///< pattern of names; empty = no mesh is written
+  std::optional<double> meshSpacing;  ///< [Å] nothing = the method's default
+  std::vector<ShownApart> shown;      ///< drawn in another way; of several that name an atom the last has it
 
   Orientation orientation;
   glm::dvec3 rotationDeg{0.0};

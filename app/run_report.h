@@ -27,7 +27,7 @@ struct RunReport {
   std::vector<std::string> failures;  ///< one line each
   /// Wall time [s]; compiling, drawing and reading back are timed by the renderer.
   double parseSeconds = 0, bondsSeconds = 0, primitivesSeconds = 0, contextSeconds = 0, encodeSeconds = 0,
-         totalSeconds = 0;
+         meshSeconds = 0, totalSeconds = 0;
   double cpuSeconds = 0;              ///< of the process, all threads
   std::uint64_t peakMemoryBytes = 0;  ///< largest resident size
   RenderStats render;

@@ -41,6 +41,7 @@ Json secondsOf(const RunReport& report) {
           {"draw", drawMs(report) / 1000},
           {"readback", report.render.readbackMs / 1000},
           {"encode", report.encodeSeconds},
+          {"export", report.meshSeconds},
           {"total", report.totalSeconds}};
 }
 
