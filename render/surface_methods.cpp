@@ -9,6 +9,7 @@
 #include "render/surface/bezier.h"
 #include "render/surface/lists.h"
 #include "render/surface/mesh.h"
+#include "render/surface/newton.h"
 #include "render/surface/tiles.h"
 #include "render/surface_method.h"
 
@@ -20,6 +21,8 @@ std::span<const SurfaceMethodInfo> surfaceMethods() {
       {"bezier", "depth-peeled Bezier clipping (Kanamori, Szego and Nishita 2008)", bezierParameters(),
        makeBezier},
       {"lists", "fragment lists (Szecsi and Illes 2012)", listsParameters(), makeLists, true},
+      {"newton", "hulls and Newton's method (SIGGRAPH 2006 poster), with a bracket around the first root",
+       newtonParameters(), makeNewton},
       {"mesh", "triangles by marching cubes; as exact as --mesh-spacing is fine", meshParameters(), makeMesh},
   };
   return kMethods;

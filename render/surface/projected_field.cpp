@@ -156,6 +156,7 @@ void Projector::write(std::uint32_t i, std::size_t to, ProjectedField& out) cons
   b.color = ball.color;
   b.id = ball.id;
   out.balls[to] = b;
+  out.indices[to] = i;
   glm::dvec2 least, most;
   box(c, r, least, most);
   out.boxes[to] = glm::vec4(glm::dvec4(least, most));
@@ -186,6 +187,7 @@ ProjectedField Projector::project(BallOrder order) const {
                      static_cast<float>(field_.kernel.shape), 0.0f};
   out.nearDepth = plane_ - view_.nearZ;
   out.balls.resize(keys.size());
+  out.indices.resize(keys.size());
   out.boxes.resize(keys.size());
   out.coreBoxes.resize(keys.size());
   out.distances.resize(keys.size());
