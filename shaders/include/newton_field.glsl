@@ -87,7 +87,7 @@ Other activeBall(Line line, Met met, int i) {
   return fetchOther(line, rank);
 }
 
-// sign * F at a place, its slope along the ray, and the sum of the absolute values of its terms.
+// sign * F at a place, its slope along the ray, and a bound of the absolute values of its terms.
 struct Value {
   float f, slope, size;
 };
@@ -160,17 +160,18 @@ Value valueAt(Line line, Met met, float at) {
 }
 #else
 Value valueAt(Line line, Met met, float at) {
-  Value sum = Value(-line.sign * uField.x, 0.0, uField.x);
+  Value sum = Value(0.0, 0.0, uField.x);
+  Terms terms = Terms(-line.sign * uField.x, 0.0);
   int balls = activeCount(line, met);
   for (int i = 0; i < balls; ++i) {
     Other o = activeBall(line, met, i);
     vec3 v = o.base + at * line.direction;
-    float w = max(1.0 - dot(v, v) * o.inverseR2, 0.0);
-    float value = o.coefficient * kernelOf(w);
-    sum.f += value;
+    float u = dot(v, v) * o.inverseR2, w = max(1.0 - u, 0.0);
+    addTerm(terms, o.coefficient, u);
     sum.slope -= 2.0 * o.coefficient * kernelSlopeOf(w) * dot(v, line.direction) * o.inverseR2;
-    sum.size += abs(value);
+    sum.size += abs(o.coefficient) * w;
   }
+  sum.f = terms.coefficients + terms.rest;
   return sum;
 }
 #endif

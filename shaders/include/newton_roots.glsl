@@ -15,6 +15,8 @@ struct Effort {
   bool unfinished;
 };
 
+// Of a sum of terms, as a share of their absolute values.
+const float kRounding = 2e-7;
 const int kMostIntervals = 4096;
 const int kMostSteps = 48;
 
@@ -50,7 +52,8 @@ struct Bounds {
 
 Bounds boundsAround(Line line, Met met, float at, float r) {
   Bounds b;
-  b.middle = Value(-line.sign * uField.x, 0.0, uField.x);
+  b.middle = Value(0.0, 0.0, uField.x);
+  Terms terms = Terms(-line.sign * uField.x, 0.0);
   b.most = -line.sign * uField.x;
   b.lowest = 0.0;
   b.highest = 0.0;
@@ -59,18 +62,17 @@ Bounds boundsAround(Line line, Met met, float at, float r) {
     Other o = activeBall(line, met, i);
     vec3 v = o.base + at * line.direction;
     float s = dot(v, line.direction), inverse = o.inverseR2;
-    float w = 1.0 - dot(v, v) * inverse;
+    float u = dot(v, v) * inverse;
     vec3 aside = v - s * line.direction;
     float peak = 1.0 - dot(aside, aside) * inverse;  // w where the ray is nearest
     float near = max(abs(s) - r, 0.0), far = abs(s) + r;
     float wMost = peak - near * near * inverse;
     if (!(wMost > 0.0)) continue;
     float wLeast = max(peak - far * far * inverse, 0.0);
-    w = max(w, 0.0);
-    float q = o.coefficient, value = q * kernelOf(w);
-    b.middle.f += value;
+    float q = o.coefficient, w = max(1.0 - u, 0.0);
+    addTerm(terms, q, u);
     b.middle.slope -= 2.0 * q * kernelSlopeOf(w) * s * inverse;
-    b.middle.size += abs(value);
+    b.middle.size += abs(q) * w;
     b.most += q * kernelOf(q > 0.0 ? wMost : wLeast);
     // k'' (w')^2 + k' w'', with w' = -2 s / R^2 and w'' = -2 / R^2.
     float steepest = min(far * far, peak / inverse), flattest = near * near;
@@ -85,6 +87,7 @@ Bounds boundsAround(Line line, Met met, float at, float r) {
     b.lowest += q * (q > 0.0 ? low : high);
     b.highest += q * (q > 0.0 ? high : low);
   }
+  b.middle.f = terms.coefficients + terms.rest;
   return b;
 }
 
@@ -103,8 +106,8 @@ Found firstRoot(Line line, float from, float to, float support, inout Effort eff
   ++effort.pieces;
   ++effort.iterations;
   Value start = valueAt(line, met, from);
-  if (start.f > 1e-6 * start.size) return Found(true, from);
-  float enough = uSolver.x * support, least = 4e-7 * support;
+  if (start.f > kRounding * start.size) return Found(true, from);
+  float enough = uSolver.x * support;
   float size = to - from;
   for (int i = 0; i < kMostIntervals; ++i) {
     if (!(from < to)) return Found(false, 0.0);
@@ -112,22 +115,24 @@ Found firstRoot(Line line, float from, float to, float support, inout Effort eff
     float r = 0.5 * (end - from), middle = from + r;
     ++effort.iterations;
     Bounds b = boundsAround(line, met, middle, r);
-    float slack = 1e-6 * b.middle.size;
     float largest = largestWithin(b, r);
     float bend = r * max(max(b.highest, -b.lowest), 0.0);
     bool falls = b.middle.slope + bend<0.0, rises = b.middle.slope - bend> 0.0;
-    bool narrow = r <= least;
-    if (largest < slack || falls || rises || narrow) {
-      if (!(largest < slack || falls)) {
-        ++effort.iterations;
-        Value last = valueAt(line, met, end);
-        if (last.f > 0.0) {
-          effort.grazing = effort.grazing || !rises;
-          return Found(true, rootWithin(line, met, from, end, middle, enough, effort));
+    // Where f is nowhere above rounding there is less to be told apart.
+    bool flat_ = largest < kRounding * b.middle.size;
+    bool narrow = r <= (flat_ ? 2e-4 : 4e-7) * support;
+    if (!(largest > 0.0) || falls || rises || narrow) {
+      if (largest > 0.0 && !falls) {
+        effort.grazing = effort.grazing || !rises;
+        float last = middle;
+        bool found = b.middle.f > 0.0;
+        if (!found) {
+          ++effort.iterations;
+          last = end;
+          found = valueAt(line, met, end).f > 0.0;
         }
+        if (found) return Found(true, rootWithin(line, met, from, last, middle, enough, effort));
       }
-      effort.grazing =
-          effort.grazing || (largest > -slack && largest < slack) || (narrow && !rises && !falls);
       from = end;
       size *= 2.0;
     } else {

@@ -35,6 +35,7 @@ void main() {
   if (!(square > 0.0)) discard;
   float front = -sqrt(square);
   if (!(front > begin)) discard;
+  front *= 0.5;  // where the field is above the level by more than its rounding
   gl_FragDepth = depthValue(uView, heightOf(ray, addSplit(b.middle, makeSplit(front, 0.0))));
 #else
   float w = (b.halfChord2 - begin * begin) / vPlace.y;

@@ -1,0 +1,223 @@
+// The method "newton" against the truth: with its bracket and all terms it is exact; as the poster has it,
+// and with an ambient field, its errors are counted and bounded.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/ambient_field.h"
+#include "core/error.h"
+#include "tests/gpu/surface_judge.h"
+#include "tests/support/exact_field.h"
+
+namespace meniscus {
+namespace {
+
+using Parameters = std::map<std::string, double>;
+
+SurfaceSettings newton(Parameters parameters = {}) {
+  return {"newton", std::move(parameters)};
+}
+
+constexpr Projection kBoth[] = {Projection::perspective, Projection::orthographic};
+
+class Newton : public test::SurfaceTest {};
+
+TEST_F(Newton, RandomBalls) {
+  const test::SurfaceScene scene = test::randomScene(1000, 1);
+  for (const Projection projection : kBoth)
+    expectExact(judge(scene, viewOf(scene, {160, 120}, projection), newton()));
+  EXPECT_EQ(stats.notConverged, 0u);
+  EXPECT_GT(stats.iterations, stats.pixels);
+  EXPECT_GT(stats.pixels, detail("hits"));
+}
+
+TEST_F(Newton, EveryMolecule) {
+  for (const auto& file : test::moleculeFiles()) {
+    SCOPED_TRACE(file.filename().string());
+    const test::SurfaceScene scene = test::moleculeScene(file);
+    expectExact(judge(scene, viewOf(scene, {96, 72}), newton(), file.filename().string()));
+  }
+}
+
+TEST_F(Newton, EveryKernel) {
+  for (const Kernel kernel : {Kernel{KernelShape::quartic}, Kernel{KernelShape::power, 2},
+                              Kernel{KernelShape::power, 7}, Kernel{KernelShape::power, 16}}) {
+    SCOPED_TRACE(kernel.exponent);
+    const test::SurfaceScene scene(test::randomField(kernel, 0.3, 60, 4, 0, 7));
+    expectExact(judge(scene, viewOf(scene, {80, 60}), newton()));
+  }
+}
+
+TEST_F(Newton, TwoHundredCoincidentBalls) {
+  const test::SurfaceScene scene = test::coincidentBalls();
+  for (const Projection projection : kBoth)
+    expectExact(judge(scene, viewOf(scene, {24, 18}, projection), newton()));
+}
+
+TEST_F(Newton, AThousandBallsAlongOneRay) {
+  const test::SurfaceView s = test::ballsAlongOneRay();
+  expectExact(judge(s.scene, s.view, newton()));
+}
+
+TEST_F(Newton, ALatticeSeenAlongAnAxis) {
+  const test::SurfaceView s = test::latticeAlongAxis();
+  expectExact(judge(s.scene, s.view, newton()));
+  expectExact(judge(s.scene, latticeInPerspective(s.scene), newton()));
+}
+
+TEST_F(Newton, NegativeBallsHollowTheSurface) {
+  for (const Kernel kernel : {Kernel{}, Kernel{KernelShape::quartic}}) {
+    const test::SurfaceScene scene(test::randomField(kernel, 0.3, 80, 4, 3, 11));
+    for (const Projection projection : kBoth)
+      expectExact(judge(scene, viewOf(scene, {80, 60}, projection), newton()));
+  }
+  const test::SurfaceView s = test::insideOfCavity();
+  expectExact(judge(s.scene, s.view, newton()));
+}
+
+TEST_F(Newton, CameraInsideBallsAndInsideTheSurface) {
+  const test::SurfaceScene scene = test::randomScene(200, 5);
+  int i = 0;
+  for (const View& view : viewsFromInside(scene)) {
+    SCOPED_TRACE(i);
+    expectExact(judge(scene, view, newton(), "inside" + std::to_string(i++)));
+  }
+}
+
+TEST_F(Newton, SupportsFromAThousandthToAThousand) {
+  const test::SurfaceScene scene = test::manyScales();
+  for (const double radius : {1000.0, 10.0, 0.1, 0.001}) {
+    SCOPED_TRACE(radius);
+    expectExact(judge(scene, viewOfScale(scene, radius), newton(), "radius" + std::to_string(radius)));
+  }
+}
+
+TEST_F(Newton, FarAwayAndAtWideAndNarrowAngles) {
+  test::SurfaceScene scene = test::randomScene(150, 3);
+  expectExact(judge(scene, viewFromAfar(scene, {96, 72}), newton()));
+  for (const double degrees : {1.0, 150.0}) expectExact(judge(scene, viewOfAngle(scene, degrees), newton()));
+  scene.primitives->origin = {1e6, -1e6, 1e6 + 0.123456789};
+  expectExact(judge(scene, viewOf(scene, {96, 72}), newton()));
+}
+
+TEST_F(Newton, LevelsNearZeroAndNearTheMaximum) {
+  for (const double level : {1e-2, 1e-4, 1e-6}) {
+    test::SurfaceScene scene = test::randomScene(60, 6);
+    scene.primitives->surfaces[0].level = level;
+    SCOPED_TRACE(level);
+    expectExact(judge(scene, viewOf(scene, {96, 72}), newton(), "level" + std::to_string(level)));
+  }
+  for (const unsigned balls : {1u, 2u}) {
+    for (const double below : {1e-2, 1e-3, 1e-4}) {
+      const test::SurfaceView s = test::nearMaximum(balls, below);
+      SCOPED_TRACE(below);
+      expectExact(judge(s.scene, s.view, newton(), "below" + std::to_string(below)));
+    }
+  }
+}
+
+TEST_F(Newton, TangentRaysMissAndEnd) {
+  const test::SurfaceView s = test::tangentRays();
+  const HitImage image = draw(s.scene, s.view, newton());
+  const std::size_t middle = image.id.size() / 2;  // two balls whose sum is the level: rounding decides
+  for (std::size_t i = 0; i < image.id.size(); ++i) EXPECT_TRUE(i == middle || image.id[i] == 0) << i;
+  EXPECT_EQ(stats.notConverged, 0u);
+}
+
+TEST_F(Newton, SpheresAndTwoSurfacesHideEachOther) {
+  const test::SurfaceScene scene = test::twoSurfaces();
+  const View view = viewOf(scene, {96, 72});
+  expectExact(judge(scene, view, newton()));
+  const HitImage surfaces = draw(scene, view, newton());
+  auto spheres = std::make_shared<Primitives>();
+  spheres->origin = scene.primitives->origin;
+  spheres->spheres = test::spheresAmongSurfaces();
+  const HitImage alone = draw({spheres}, view, newton());
+  scene.primitives->spheres = spheres->spheres;
+  const HitImage both = draw(scene, view, newton());
+  int fromSpheres = 0, fromSurfaces = 0;
+  for (std::size_t i = 0; i < both.id.size(); ++i) {
+    if (std::abs(alone.distance[i] - surfaces.distance[i]) < 1e-4f) continue;
+    const bool sphere = alone.distance[i] < surfaces.distance[i];
+    EXPECT_EQ(both.id[i], sphere ? alone.id[i] : surfaces.id[i]);
+    if (both.id[i] == 0) continue;
+    EXPECT_NEAR(both.distance[i], sphere ? alone.distance[i] : surfaces.distance[i], 1e-5f);
+    ++(sphere ? fromSpheres : fromSurfaces);
+  }
+  EXPECT_GT(fromSpheres, 100);
+  EXPECT_GT(fromSurfaces, 100);
+}
+
+TEST_F(Newton, AnyTilesOfTheTargetGiveTheSameBytes) {
+  const test::SurfaceScene scene = test::randomScene(150, 3);
+  const View view = viewOf(scene, {90, 70});
+  const HitImage whole = draw(scene, view, newton());
+  RendererOptions small;
+  small.maxTileSize = 33;
+  Renderer renderer(small);
+  renderer.setPrimitives(scene.primitives);
+  const HitImage parts = renderer.renderHits(view, {}, newton());
+  EXPECT_EQ(parts.id, whole.id);
+  EXPECT_EQ(parts.distance, whole.distance);
+}
+
+// The poster's iteration: pixels are lost, counted, and shown.
+TEST_F(Newton, ThePostersIterationFailsAndSaysSo) {
+  const test::SurfaceScene scene = test::randomScene(150, 3);
+  const View view = viewOf(scene, {96, 72});
+  std::uint64_t before = ~std::uint64_t{0};
+  for (const double iterations : {3, 8, 32}) {
+    const HitErrors e =
+        judge(scene, view, newton({{"safeguard", 0}, {"debug", 0}, {"iterations", iterations}}));
+    EXPECT_LT(stats.notConverged, before);
+    before = stats.notConverged;
+    EXPECT_GT(e.compared, 500u);
+  }
+  EXPECT_LT(before, 96 * 72 / 20);
+  const Parameters few{{"safeguard", 0}, {"debug", 0}, {"iterations", 3}};
+  const HitImage holes = draw(scene, view, newton(few));
+  Parameters shown = few;
+  shown["debug"] = 1;
+  const HitImage magenta = draw(scene, view, newton(shown));
+  std::size_t filled = 0;
+  for (std::size_t i = 0; i < holes.id.size(); ++i) filled += holes.id[i] == 0 && magenta.id[i] != 0 ? 1 : 0;
+  EXPECT_EQ(filled, stats.notConverged);
+  EXPECT_GT(filled, 50u);
+}
+
+// With as many terms as are ever active nothing is left to the ambient field.
+TEST_F(Newton, ManyTermsAreAllTerms) {
+  const test::SurfaceScene scene = test::randomScene(150, 3);
+  const View view = viewOf(scene, {64, 48});
+  const HitErrors e = judge(scene, view, newton({{"terms", 32}, {"ambient", 0}}));
+  EXPECT_EQ(e.falseHits, 0u);
+  EXPECT_LE(e.missed, 2u);
+  EXPECT_LE(e.relativeRms, 1e-4);
+}
+
+TEST_F(Newton, AFinerAmbientFieldAndMoreTermsAreMoreExact) {
+  const test::SurfaceScene scene = test::randomScene(150, 3);
+  const View view = viewOf(scene, {64, 48});
+  double before = 1e9;
+  for (const double cells : {8, 32, 128}) {
+    const HitErrors e = judge(scene, view, newton({{"terms", 2}, {"ambient", cells}}));
+    EXPECT_LT(e.distanceP99, before);
+    before = e.distanceP99;
+  }
+  EXPECT_LT(before, 0.05);
+  const HitErrors none = judge(scene, view, newton({{"terms", 2}, {"ambient", 0}}));
+  EXPECT_GT(none.distanceP99, 0.2) << "what the texture is for";
+  const HitErrors more = judge(scene, view, newton({{"terms", 4}, {"ambient", 128}}));
+  EXPECT_LT(more.distanceP99, before);
+}
+
+TEST_F(Newton, UnknownOptionsAreNamed) {
+  const test::SurfaceScene scene = test::randomScene(10, 1);
+  EXPECT_THROW(draw(scene, viewOf(scene, {16, 12}), newton({{"terms", 33}})), UsageError);
+  EXPECT_THROW(draw(scene, viewOf(scene, {16, 12}), newton({{"steps", 1}})), UsageError);
+}
+
+}  // namespace
+}  // namespace meniscus
