@@ -1,5 +1,5 @@
 meniscus_test(NAME core_test LABEL unit
-  SOURCES atom_colors_test.cpp camera_fit_test.cpp displacement_test.cpp hit_errors_test.cpp metaball_field_test.cpp primitives_test.cpp reference_tracer_test.cpp sampling_test.cpp surface_method_test.cpp
+  SOURCES ambient_field_test.cpp atom_colors_test.cpp camera_fit_test.cpp displacement_test.cpp hit_errors_test.cpp metaball_field_test.cpp primitives_test.cpp reference_tracer_test.cpp sampling_test.cpp surface_method_test.cpp
           view_test.cpp
   LIBRARIES meniscus_render meniscus_core)
 meniscus_test(NAME tiles_test LABEL unit SOURCES tiles_test.cpp ${PROJECT_SOURCE_DIR}/tests/support/scenes.cpp
