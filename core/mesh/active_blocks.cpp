@@ -86,10 +86,11 @@ void Search::visit(const glm::ivec3& first, int side, std::span<const std::uint3
   if (!mayMeet(first, side, candidates, inside)) return;
   if (side == kBlockSide) {
     if (++count_ > most_)
-      throw InputError(fmt::format(
-          "--mesh-spacing: with {:g} A the surface takes more than {} blocks of cubes, which is more memory "
-          "than a mesh may have; give a larger spacing, or draw less",
-          grid_.spacing, most_));
+      throw InputError(
+          fmt::format("--mesh-spacing: with {:g} A the surface lies in more than {} blocks of {} cubes, "
+                      "which is more memory "
+                      "than a mesh may have here; give a larger spacing, or draw less",
+                      grid_.spacing, most_, kBlockSide * kBlockSide * kBlockSide));
     found_.local().push_back({blockKey(first), first, std::move(inside)});
     return;
   }

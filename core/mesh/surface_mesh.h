@@ -30,7 +30,7 @@ struct SurfaceMesh {
 struct MeshOptions {
   double spacing = 0.5;  ///< side of a cube [Å], > 0
   /// Of memory, while it is made. The same on every machine: what is refused here is refused there.
-  std::uint64_t mostBytes = std::uint64_t{3} << 30;
+  std::uint64_t mostBytes = std::uint64_t{4} << 30;
 };
 
 /// The same bytes for the same field and options, on any number of processors. Throws InputError as

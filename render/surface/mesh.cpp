@@ -18,6 +18,9 @@ constexpr SurfaceParameter kParameters[] = {
     {"spacing", "side of the grid's cubes in Angstrom; what is smaller may be lost", 0.5, 0.1, 4, false},
 };
 
+// Of memory while it is made: what is drawn is made again in every process. An export may take more.
+constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 30;
+
 // Of the textures that shaders/surface/mesh.* read; the same there.
 constexpr int kVerticesPerRow = 2048, kTrianglesPerRow = 1365;
 constexpr int kRowsPerChunk = 4096;
@@ -54,7 +57,7 @@ class Mesh : public SurfaceMethod {
 void Mesh::prepare(const MetaballField& field) {
   field_ = &field;
   const auto start = std::chrono::steady_clock::now();
-  const SurfaceMesh mesh = meshSurface(field, {.spacing = spacing_});
+  const SurfaceMesh mesh = meshSurface(field, {.spacing = spacing_, .mostBytes = kMostBytes});
   const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start;
   upload(mesh);
   stats_.details = {{"vertices", static_cast<double>(mesh.vertices.size())},

@@ -269,7 +269,8 @@ std::string refusalOf(const MetaballField& field, const MeshOptions& options) {
 TEST(SurfaceMesh, WhatIsTooLargeIsRefusedByItsSpacing) {
   MetaballField field;
   field.balls = {{{0, 0, 0}, 1000, 1, 0, 1}};
-  EXPECT_NE(refusalOf(field, {.spacing = 0.1}).find("--mesh-spacing: with 0.1 A"), std::string::npos);
+  EXPECT_NE(refusalOf(field, {.spacing = 0.1, .mostBytes = 64u << 20}).find("--mesh-spacing: with 0.1 A"),
+            std::string::npos);
   field.balls.push_back({{1e9f, 0, 0}, 4, 1, 0, 2});
   EXPECT_NE(refusalOf(field, {.spacing = 0.5}).find("--mesh-spacing: 0.5 A is too fine"), std::string::npos);
   field.balls.back().center.x = std::numeric_limits<float>::infinity();
