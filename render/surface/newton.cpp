@@ -154,8 +154,8 @@ void Newton::addPasses(FrameGraph& graph, ShaderLibrary& shaders, const SurfaceT
 }
 
 void Newton::draw(const PassContext& context, ShaderLibrary& shaders, const SurfaceTarget& target) {
-  const ProjectedField projected =
-      projectField(*field_, coreShares_, target.view, target.origin, target.tile, target.sampleShift, BallOrder::depth);
+  const ProjectedField projected = projectField(*field_, coreShares_, target.view, target.origin, target.tile,
+                                                target.sampleShift, BallOrder::depth);
   if (projected.balls.empty()) return;
   Frame frame{context, shaders, target.gbuffer, {0, 0, target.tile.width, target.tile.height}, 0, 0, {}};
   if (field_->kernel.shape == KernelShape::quartic) frame.kernel.insert("KERNEL_QUARTIC");

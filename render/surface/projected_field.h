@@ -42,8 +42,8 @@ struct ProjectedField {
   /// That reach behind the near plane and into the target; in their order, equals in the field's.
   std::vector<ProjectedBall> balls;
   std::vector<std::uint32_t> indices;  ///< of each: its place in MetaballField::balls
-  std::vector<glm::vec4> boxes;      ///< of each: rectangle around it, in pixels of the target
-  std::vector<glm::vec4> coreBoxes;  ///< the same around its core; empty (to <= from) if it has none
+  std::vector<glm::vec4> boxes;        ///< of each: rectangle around it, in pixels of the target
+  std::vector<glm::vec4> coreBoxes;    ///< the same around its core; empty (to <= from) if it has none
   /// Of each: its effective distance less the height of the eye above the plane (orthographic: how far its
   /// nearest point lies below the plane) [Å].
   std::vector<double> distances;
