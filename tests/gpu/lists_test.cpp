@@ -265,8 +265,12 @@ TEST_F(Lists, LevelNearTheMaximum) {
     for (const double below : {1e-2, 1e-3, 1e-4}) {
       SCOPED_TRACE(below);
       const auto [scene, view] = test::nearMaximum(balls, below);
-      expectExact(
-          judge(scene, view, lists(), "balls" + std::to_string(balls) + "_below" + std::to_string(below)));
+      const HitErrors errors =
+          judge(scene, view, lists(), "balls" + std::to_string(balls) + "_below" + std::to_string(below));
+      EXPECT_EQ(errors.missed + errors.falseHits, 0u);
+      EXPECT_GT(errors.compared, 300u);
+      EXPECT_LE(errors.relativeRms, 1e-5);
+      EXPECT_LE(errors.normalRmsDeg, 0.1);  // the gradient all but vanishes
     }
   }
 }
