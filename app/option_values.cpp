@@ -16,6 +16,21 @@ constexpr int kMaxSide = 65535;
 constexpr long long kMaxPixels = 0x7fffffff;
 constexpr long long kMaxCopies = 1'000'000;
 
+constexpr std::array<Choice<ColorScheme>, 6> kSchemes{{
+    {"element", ColorScheme::element},
+    {"chain", ColorScheme::chain},
+    {"residue", ColorScheme::residue},
+    {"bfactor", ColorScheme::bFactor},
+    {"plddt", ColorScheme::plddt},
+    {"rainbow", ColorScheme::rainbow},
+}};
+
+constexpr Choice<Representation> kRepresentations[] = {{"spacefill", Representation::spacefill},
+                                                       {"ball_and_stick", Representation::ballAndStick},
+                                                       {"licorice", Representation::licorice},
+                                                       {"ellipsoids", Representation::ellipsoids},
+                                                       {"surface", Representation::surface}};
+
 /// The whole text as a number; nothing if it is not one.
 template <typename Number>
 std::optional<Number> numberFrom(std::string_view text) {
@@ -134,14 +149,6 @@ std::optional<Rgb> colorFromHex(std::string_view value) {
 }
 
 Coloring parseColoring(std::string_view option, std::string_view value) {
-  static constexpr std::array<Choice<ColorScheme>, 6> kSchemes{{
-      {"element", ColorScheme::element},
-      {"chain", ColorScheme::chain},
-      {"residue", ColorScheme::residue},
-      {"bfactor", ColorScheme::bFactor},
-      {"plddt", ColorScheme::plddt},
-      {"rainbow", ColorScheme::rainbow},
-  }};
   Coloring coloring;
   const auto* scheme = std::find_if(kSchemes.begin(), kSchemes.end(),
                                     [word = folded(value)](const auto& entry) { return entry.word == word; });
@@ -154,6 +161,13 @@ Coloring parseColoring(std::string_view option, std::string_view value) {
     throwBadValue(option, value, "element, chain, residue, bfactor, plddt, rainbow or a colour as '#RRGGBB'");
   }
   return coloring;
+}
+
+std::string coloringName(const Coloring& coloring) {
+  if (coloring.scheme == ColorScheme::uniform) return fmt::format("#{:06X}", coloring.uniform);
+  return std::string(std::find_if(kSchemes.begin(), kSchemes.end(), [&](const auto& entry) {
+                       return entry.value == coloring.scheme;
+                     })->word);
 }
 
 Layers parseLayers(std::string_view option, std::string_view value) {
@@ -242,12 +256,13 @@ Kernel parseKernel(std::string_view option, std::string_view value) {
 }
 
 Representation parseRepresentation(std::string_view option, std::string_view value) {
-  return parseChoice<Representation>(option, value,
-                                     {{"spacefill", Representation::spacefill},
-                                      {"ball_and_stick", Representation::ballAndStick},
-                                      {"licorice", Representation::licorice},
-                                      {"ellipsoids", Representation::ellipsoids},
-                                      {"surface", Representation::surface}});
+  return parseChoice(option, value, kRepresentations);
+}
+
+std::string_view representationName(Representation representation) {
+  return std::find_if(std::begin(kRepresentations), std::end(kRepresentations),
+                      [&](const auto& entry) { return entry.value == representation; })
+      ->word;
 }
 
 std::pair<std::string, double> parseSurfaceOption(std::string_view option, std::string_view value) {

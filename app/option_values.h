@@ -47,6 +47,8 @@ double parseProbability(std::string_view option, std::string_view value);
 std::optional<Rgb> colorFromHex(std::string_view value);
 
 Coloring parseColoring(std::string_view option, std::string_view value);
+/// The text that parseColoring() takes for it, without what --carbons says.
+std::string coloringName(const Coloring& coloring);
 /// Names separated by commas, out of color, albedo, normal, depth, distance, id.
 Layers parseLayers(std::string_view option, std::string_view value);
 /// Names separated by commas, out of silhouettes, creases and one of chains, residues, atoms; or off. Only
@@ -62,6 +64,8 @@ Orientation parseOrientation(std::string_view option, std::string_view value);
 /// sextic, quartic, or power:N with N an exponent that is allowed.
 Kernel parseKernel(std::string_view option, std::string_view value);
 Representation parseRepresentation(std::string_view option, std::string_view value);
+/// The word that parseRepresentation() takes for it.
+std::string_view representationName(Representation representation);
 
 /// NAME=VALUE with a finite number: a surface method's parameter.
 std::pair<std::string, double> parseSurfaceOption(std::string_view option, std::string_view value);

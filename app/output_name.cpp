@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <string_view>
 #include <utility>
@@ -42,18 +43,29 @@ OutputPattern::OutputPattern(std::string pattern) : pattern_(std::move(pattern))
           namesStem_ = true;
         else if (name == "model")
           namesModel_ = true;
+        else if (name == "state")
+          namesState_ = true;
+        else if (name == "frame")
+          namesFrame_ = true;
         else
-          throw UsageError(fmt::format(
-              "--output: '{{{}}}' in '{}' is not known; there are {{stem}} and {{model}}", name, pattern_));
+          throw UsageError(
+              fmt::format("--output: '{{{}}}' in '{}' is not known; there are {{stem}}, {{model}}, {{state}} "
+                          "and {{frame}}",
+                          name, pattern_));
       });
 }
 
-std::string OutputPattern::nameFor(const std::filesystem::path& input, int model) const {
+std::string OutputPattern::nameFor(const std::filesystem::path& input, const OutputPlace& place) const {
+  std::string state = place.state;
+  std::replace(state.begin(), state.end(), '/', '_');
   std::string name;
   walk(
       pattern_, [&](char c) { name += c; },
       [&](std::string_view placeholder) {
-        name += placeholder == "stem" ? stemOf(input) : std::to_string(model);
+        name += placeholder == "stem"    ? stemOf(input)
+                : placeholder == "model" ? std::to_string(place.model)
+                : placeholder == "state" ? state
+                                         : fmt::format("{:05}", place.frame);
       });
   return name;
 }
@@ -67,7 +79,7 @@ std::string stemOf(const std::filesystem::path& input) {
 void requireDistinctOutputs(const OutputPattern& pattern, const std::vector<std::string>& inputs) {
   std::map<std::string, std::string> inputOf;
   for (const std::string& input : inputs) {
-    const std::string name = pattern.nameFor(input, 1);
+    const std::string name = pattern.nameFor(input, {});
     const auto [entry, added] = inputOf.emplace(name, input);
     if (added) continue;
     if (!pattern.namesStem())

@@ -9,6 +9,8 @@
 #include <sstream>
 
 #include "app/command_line.h"
+#include "app/film.h"
+#include "app/scene/settings.h"
 #include "app/style.h"
 #include "core/error.h"
 #include "core/render_settings.h"
@@ -29,8 +31,10 @@ constexpr const char* kExamples =
     "      --carbons chain --focus '(HEM)' --size 1920x1080 --background transparent\n"
     "  meniscus render models/*.pdb -o 'pictures/{stem}-{model}.png' --model all --color rainbow\n";
 
-constexpr std::array<std::string_view, 9> kNotForThePicture{
-    "output", "stats", "explain", "quiet", "backend", "quadrics", "shader-dir", "help", "export"};
+constexpr std::array<std::string_view, 20> kNotForThePicture{
+    "output",   "stats",  "explain",    "quiet",      "backend", "quadrics", "shader-dir",
+    "help",     "scene",  "strict",     "save-scene", "offline", "cache",    "jobs",
+    "manifest", "resume", "time-limit", "turntable",  "fps",     "export"};
 
 std::string shellQuoted(const std::string& text) {
   const auto plain = [](char c) {
@@ -343,6 +347,42 @@ void addStructureOptions(CLI::App& app, RenderOptions& o) {
               [&o](auto& n, auto& v) { o.replicate = parseCopies(n, v); });
 }
 
+void addSceneOptions(CLI::App& app, RenderOptions& o) {
+  OptionGroup group(app, "Scenes");
+  group.values("--scene", "FILE",
+               "Draw a MolViewSpec scene (.mvsj or .mvsx); may be repeated.\n"
+               "{state} in OUT stands for the key of one of its states",
+               [&o](auto&, auto& v) { o.scenes.push_back(v); });
+  group.value("--save-scene", "FILE", "Write what files and options mean as a scene (.mvsj)",
+              [&o](auto&, auto& v) { o.saveScene = v; });
+  group.flag("--strict", "Fail if a scene has something that is not supported", o.strict);
+  group.flag("--offline", "Fetch nothing from the web; what was fetched before is used", o.offline);
+  group.value("--cache", "DIR", "Where fetched files are kept [$XDG_CACHE_HOME/meniscus]",
+              [&o](auto&, auto& v) { o.cache = v; });
+}
+
+void addBatchOptions(CLI::App& app, RenderOptions& o) {
+  OptionGroup group(app, "Many pictures");
+  group.value("--manifest", "FILE",
+              "Write a line of JSON about every picture: input, output,\n"
+              "milliseconds, warnings, error",
+              [&o](auto&, auto& v) { o.manifest = v; });
+  group.flag("--resume",
+             "Leave out pictures that the manifest says are done, if\n"
+             "input, options and program are the same",
+             o.resume);
+  group.value("--jobs", "N", "Inputs that are read while others are drawn, 1 to 64 [1]",
+              [&o](auto& n, auto& v) { o.jobs = parseInteger(n, v, 1, 64); });
+  group.value("--time-limit", "SECONDS", "Give up a picture that takes longer [0: no limit]",
+              [&o](auto& n, auto& v) { o.timeLimit = parseNumber(n, v, 0, 1e6, "seconds"); });
+  group.value("--turntable", "N",
+              "N pictures of a full turn about the picture's vertical axis;\n"
+              "OUT has {frame}, or ends in .mp4, .webm or .gif (by ffmpeg)",
+              [&o](auto& n, auto& v) { o.turntable = parseInteger(n, v, 1, 100000); });
+  group.value("--fps", "N", "Pictures per second of a film [30]",
+              [&o](auto& n, auto& v) { o.framesPerSecond = parseNumber(n, v, 1, 240); });
+}
+
 void addOtherOptions(CLI::App& app, RenderOptions& o) {
   OptionGroup group(app, "Other");
   group.value("--backend", "auto|egl|osmesa", "How to reach OpenGL [auto]; see 'meniscus doctor'",
@@ -367,70 +407,115 @@ void addOtherOptions(CLI::App& app, RenderOptions& o) {
   group.flag("-q,--quiet", "No progress and no notes, only errors", o.quiet);
 }
 
+// With a scene, what is drawn and from where is the scene's business.
+void requireOnlyPictureOptions(const RenderOptions& o) {
+  for (const auto& [name, value] : o.given)
+    if (!findSetting(SettingPlace::picture, name))
+      throw UsageError(
+          fmt::format("--{}: is for structure files; with --scene, the scene says it (docs/scene.md)", name));
+}
+
 void requireConsistent(const CLI::App& app, RenderOptions& o) {
-  if (o.files.empty())
+  if (o.files.empty() && o.scenes.empty())
     throw UsageError("no input; give a structure file, as in meniscus render FILE -o OUT.png");
   if (o.output.empty() && o.exportMesh.empty())
     throw UsageError("no output; add the picture's name, as in -o picture.png");
   if (std::filesystem::is_directory(o.output)) requireWritable(o.output);  // says that it is a folder
   if (!o.exportMesh.empty()) requireMeshName("--export", o.exportMesh);
-  if (!(o.fog.start < o.fog.end))
-    throw UsageError("--fog-start: must be less than --fog-end (they are 0.2 and 1 unless given)");
   if (o.meshSpacing && o.surface.method == "mesh") o.surface.parameters["spacing"] = *o.meshSpacing;
   if (o.meshSpacing && o.surface.method != "mesh" && o.exportMesh.empty())
     throw UsageError("--mesh-spacing: there is no mesh; add --surface-method mesh or --export FILE.ply");
-  if (o.surface.parameters.size() > 0 || o.surface.method != "auto" || o.surface.translucent())
-    surfaceParametersFor(surfaceMethodFor(o.surface), o.surface);  // throws if it has no such parameter
-  const ImageType type = o.output.empty() ? ImageType::exr : imageTypeOf(o.output);
-  if (type == ImageType::exr && !o.output.empty() && app.count("--depth") > 0)
+  if (!o.scenes.empty()) requireOnlyPictureOptions(o);
+  if (!o.saveScene.empty() && !o.scenes.empty())
+    throw UsageError(
+        "--save-scene: writes what structure files and options mean; a scene is written already");
+  if (o.resume && o.manifest.empty())
+    throw UsageError("--resume: needs the --manifest of the run that is to be continued");
+  requireSettingsConsistent(o);
+  if (!o.output.empty() && !isFilm(o.output) && imageTypeOf(o.output) == ImageType::exr &&
+      app.count("--depth") > 0)
     throw UsageError(
         "--depth: is for PNG; OpenEXR pictures are floating point (depth as a layer: --channels depth)");
-  if (type != ImageType::exr && o.layers != Layers{})
-    throw UsageError("--channels: is for OpenEXR; a PNG holds the colour only, so let OUT end in .exr");
   if (!o.shaderDir.empty() && !std::filesystem::is_directory(o.shaderDir))
     throw UsageError("--shader-dir: '" + o.shaderDir.string() + "' is not a folder; give a copy of shaders/");
 }
 
-std::string pictureOptionsOf(const CLI::App& app) {
-  std::string text;
+bool isForThePicture(const CLI::Option& option) {
+  if (option.count() == 0 || option.get_lnames().empty() || option.results().back() == "false") return false;
+  return std::find(kNotForThePicture.begin(), kNotForThePicture.end(), option.get_lnames().front()) ==
+         kNotForThePicture.end();
+}
+
+std::vector<std::pair<std::string, std::string>> givenOptions(const CLI::App& app) {
+  std::vector<std::pair<std::string, std::string>> given;
   for (const CLI::Option* option : app.get_options({})) {
-    if (option->count() == 0 || option->get_lnames().empty() || option->results().back() == "false") continue;
+    if (!isForThePicture(*option)) continue;
     const std::string& name = option->get_lnames().front();
-    if (std::find(kNotForThePicture.begin(), kNotForThePicture.end(), name) != kNotForThePicture.end())
-      continue;
     if (option->get_items_expected_max() == 0) {
-      text += " --" + name;
+      given.emplace_back(name, "");
     } else if (option->get_multi_option_policy() == CLI::MultiOptionPolicy::TakeAll) {
-      for (const std::string& value : option->results()) text += " --" + name + " " + shellQuoted(value);
+      for (const std::string& value : option->results()) given.emplace_back(name, value);
     } else {
-      text += " --" + name + " " + shellQuoted(option->results().back());
+      given.emplace_back(name, option->results().back());
     }
   }
+  return given;
+}
+
+std::string pictureOptionsOf(const RenderOptions& o) {
+  std::string text;
+  for (const auto& [name, value] : o.given)
+    text += value.empty() ? " --" + name : " --" + name + " " + shellQuoted(value);
   return text;
+}
+
+void addAllOptions(CLI::App& app, RenderOptions& options) {
+  options.structure.altlocs = Altlocs::first;
+  options.structure.waters = Waters::automatic;
+  app.add_option("FILE", options.files, "Structure files; {stem} in OUT gives each its own picture")
+      ->type_name("FILE...");
+  addOutputOptions(app, options);
+  addLookOptions(app, options);
+  addSurfaceOptions(app, options);
+  addStyleOption(app);
+  addLightOptions(app, options);
+  addLineOptions(app, options);
+  addCameraOptions(app, options);
+  addStructureOptions(app, options);
+  addSceneOptions(app, options);
+  addBatchOptions(app, options);
+  addOtherOptions(app, options);
 }
 
 }  // namespace
 
+void requireSettingsConsistent(const RenderOptions& o) {
+  if (!(o.fog.start < o.fog.end))
+    throw UsageError("--fog-start: must be less than --fog-end (they are 0.2 and 1 unless given)");
+  if (o.surface.parameters.size() > 0 || o.surface.method != "auto" || o.surface.translucent())
+    surfaceParametersFor(surfaceMethodFor(o.surface), o.surface);  // throws if it has no such parameter
+  if (!o.output.empty() && (isFilm(o.output) || imageTypeOf(o.output) != ImageType::exr) &&
+      o.layers != Layers{})
+    throw UsageError("--channels: is for OpenEXR; a PNG holds the colour only, so let OUT end in .exr");
+}
+
+RenderOptions parseSettings(const std::vector<std::string>& arguments) {
+  RenderOptions options;
+  const std::unique_ptr<CLI::App> app = makeCommandLine("render", kDescription, kExamples);
+  addAllOptions(*app, options);
+  parseCommandLine(*app, withStyle(arguments));
+  options.given = givenOptions(*app);
+  return options;
+}
+
 std::optional<RenderOptions> parseRenderOptions(const std::vector<std::string>& arguments) {
   RenderOptions options;
-  options.structure.altlocs = Altlocs::first;
-  options.structure.waters = Waters::automatic;
-
   const std::unique_ptr<CLI::App> app = makeCommandLine("render", kDescription, kExamples);
-  app->add_option("FILE", options.files, "Structure files; {stem} in OUT gives each its own picture")
-      ->type_name("FILE...");
-  addOutputOptions(*app, options);
-  addLookOptions(*app, options);
-  addSurfaceOptions(*app, options);
-  addStyleOption(*app);
-  addLightOptions(*app, options);
-  addLineOptions(*app, options);
-  addCameraOptions(*app, options);
-  addStructureOptions(*app, options);
-  addOtherOptions(*app, options);
+  addAllOptions(*app, options);
   if (!parseCommandLine(*app, withStyle(arguments))) return std::nullopt;
+  options.given = givenOptions(*app);
+  options.pictureOptions = pictureOptionsOf(options);
   requireConsistent(*app, options);
-  options.pictureOptions = pictureOptionsOf(*app);
   return options;
 }
 

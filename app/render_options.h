@@ -5,6 +5,7 @@
 #include <glm/vec3.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/option_values.h"
@@ -17,7 +18,8 @@ namespace meniscus {
 
 struct RenderOptions {
   std::vector<std::string> files;
-  std::string output;  ///< pattern, see app/output_name.h
+  std::vector<std::string> scenes;  ///< MolViewSpec files
+  std::string output;               ///< pattern, see app/output_name.h
 
   StructureOptions structure;
   std::string assembly;  ///< empty = the atoms as they stand in the file
@@ -54,6 +56,18 @@ struct RenderOptions {
   int bitDepth = 8;  ///< PNG: 8 or 16
   double dpi = 0;    ///< 0 = not written
 
+  int jobs = 1;                 ///< inputs that are prepared while others are drawn
+  std::string manifest;         ///< JSON Lines about every picture; empty = none
+  bool resume = false;          ///< leave out what the manifest says is done
+  double timeLimit = 0;         ///< of a picture [s]; 0 = none
+  int turntable = 0;            ///< pictures of a turn about the vertical axis; 0 = one picture that stands
+  double framesPerSecond = 30;  ///< of a film
+
+  std::string saveScene;        ///< MolViewSpec file to write; empty = none
+  bool strict = false;          ///< what a scene has that is not supported is an error
+  bool offline = false;         ///< nothing is fetched from the web
+  std::filesystem::path cache;  ///< of what was fetched; empty = the usual place
+
   Backend backend = Backend::automatic;
   QuadricMethod quadrics = QuadricMethod::automatic;
   std::filesystem::path shaderDir;
@@ -64,9 +78,17 @@ struct RenderOptions {
   /// The options that decide what the picture looks like, as given, quoted for a shell: what a picture's
   /// metadata record.
   std::string pictureOptions;
+  /// The same by name (without "--") and value; a flag's value is empty.
+  std::vector<std::pair<std::string, std::string>> given;
 };
 
 /// Nothing if --help was asked for (it has been printed). Throws UsageError.
 std::optional<RenderOptions> parseRenderOptions(const std::vector<std::string>& arguments);
+
+/// Options that a scene gives, without inputs and outputs. Throws UsageError ("--name: ...").
+RenderOptions parseSettings(const std::vector<std::string>& arguments);
+
+/// Throws UsageError if the options contradict each other or the name of the output.
+void requireSettingsConsistent(const RenderOptions& options);
 
 }  // namespace meniscus

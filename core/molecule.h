@@ -40,6 +40,9 @@ struct Anisotropy {
 
 enum class ResidueKind : std::uint8_t { aminoAcid, nucleotide, water, ion, ligand, saccharide };
 
+/// Where a residue's backbone runs; turns and bends count as coil.
+enum class SecondaryStructure : std::uint8_t { coil, helix, strand };
+
 struct Residue {
   std::string name;          ///< "ALA", "DG", "HEM"
   std::int32_t number = 0;   ///< author numbering, may be negative
@@ -48,6 +51,10 @@ struct Residue {
   bool hetero = false;  ///< HETATM rather than ATOM
   std::uint32_t chain = 0;
   IndexRange atoms;
+  std::string subchain;                     ///< label_asym_id; empty in PDB files
+  std::string entity;                       ///< label_entity_id; empty in PDB files
+  std::optional<std::int32_t> labelNumber;  ///< label_seq_id; nothing in PDB files and outside polymers
+  SecondaryStructure secondary = SecondaryStructure::coil;  ///< as the file says, see hasSecondary
 };
 
 struct Chain {
@@ -84,6 +91,7 @@ struct UnitCell {
 struct Molecule {
   std::string name;                   ///< entry id or file stem
   std::int32_t model = 1;             ///< model number in the file
+  std::int32_t modelIndex = 0;        ///< position among the file's models, from 0
   std::vector<glm::dvec3> positions;  ///< Å
   std::vector<AtomName> names;
   std::vector<std::uint8_t> elements;    ///< atomic number, 0 = unknown; deuterium is 1
@@ -99,7 +107,9 @@ struct Molecule {
   std::vector<Bond> bonds;  ///< those of the file's records after reading; all after addMissingBonds()
   std::vector<Assembly> assemblies;
   std::optional<UnitCell> cell;
-  bool predicted = false;  ///< a computed model whose B column holds pLDDT (0..100)
+  std::string spaceGroup;     ///< Hermann-Mauguin symbol as in the file ("P 21 21 21"); may be empty
+  bool hasSecondary = false;  ///< the file describes helices or strands
+  bool predicted = false;     ///< a computed model whose B column holds pLDDT (0..100)
 
   std::size_t atomCount() const { return positions.size(); }
   std::uint32_t chainOf(std::size_t atom) const { return residues[residueOf[atom]].chain; }

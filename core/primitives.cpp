@@ -38,12 +38,13 @@ class Ellipsoids {
 };
 
 float drawnRadius(const SceneObject& object, const Ellipsoids& ellipsoids, std::size_t atom) {
-  const float vdw = vanDerWaalsRadius(object.molecule->elements[atom], object.radii);
+  const float plain = vanDerWaalsRadius(object.molecule->elements[atom], object.radii);
+  const float vdw = plain * static_cast<float>(object.radiusScale);
   switch (object.representation) {
     case Representation::spacefill:
       return vdw;
     case Representation::ballAndStick:
-      return vdw * static_cast<float>(object.ballScale);
+      return plain * static_cast<float>(object.ballScale);
     case Representation::licorice:
       return static_cast<float>(object.licoriceRadius);
     case Representation::ellipsoids:
@@ -216,7 +217,8 @@ Primitives buildPrimitives(const Scene& scene, LineGroups groups) {
   std::vector<std::uint32_t> scratch;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const SceneObject& object = scene.objects[i];
-    const std::vector<Rgb> colors = colorAtoms(*object.molecule, object.coloring);
+    const std::vector<Rgb> colors =
+        object.colors.empty() ? colorAtoms(*object.molecule, object.coloring) : object.colors;
     const Ellipsoids ellipsoids(object);
     const auto atoms = static_cast<std::uint32_t>(object.molecule->atomCount());
     const bool shared = sharesIds(scene, i);

@@ -6,6 +6,7 @@
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/assembly.h"
@@ -48,13 +49,23 @@ struct SceneObject {
   std::vector<Placement> placements;  ///< see placeOnce, placeAssembly, replicate
   Representation representation = Representation::spacefill;
   Coloring coloring;
+  std::vector<Rgb> colors;  ///< one for each atom of the molecule, instead of `coloring`; or empty
   RadiusSet radii = RadiusSet::bondi;
+  double radiusScale = 1;        ///< of van der Waals radii (space-filling, surface)
   double ballScale = 0.25;       ///< ball radius as a share of the van der Waals radius (ball and stick)
   double stickRadius = 0.15;     ///< cylinder radius [Å], ball and stick
   double licoriceRadius = 0.25;  ///< cylinder and sphere radius [Å], licorice
   double ellipsoidStickRadius = 0.06;  ///< cylinder radius [Å], ellipsoids
   double probability = 0.5;            ///< that an atom is inside its ellipsoid, 0 < p < 1
   SurfaceShape surface;
+};
+
+/// A line of text in the picture, centred on the point of a sphere that is nearest to the viewer: what lies
+/// before that point hides it, what lies in the sphere does not.
+struct Label {
+  std::string text;  ///< UTF-8
+  glm::dvec3 center{0.0};
+  double radius = 0;  ///< of the sphere [Å]
 };
 
 /// Light from infinity, fixed to the viewer.
@@ -89,6 +100,7 @@ struct Background {
 
 struct Scene {
   std::vector<SceneObject> objects;
+  std::vector<Label> labels;
   Lighting lighting;
   Background background;
   Camera camera;

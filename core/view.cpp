@@ -41,6 +41,10 @@ View makeView(const Camera& camera, ImageSize size, const BoundingSphere& bounds
     view.nearZ = std::min(view.nearZ, view.distance - kNearestPlane * half);
     view.farZ = std::min(view.farZ, view.nearZ - half);
   }
+  if (camera.nearest && camera.distance - *camera.nearest < view.nearZ) {
+    view.nearZ = camera.distance - *camera.nearest;
+    view.farZ = std::min(view.farZ, view.nearZ - 1e-3 * half);  // where everything lies before the plane
+  }
   return view;
 }
 

@@ -10,6 +10,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 
 #include "core/image.h"
 
@@ -50,6 +51,7 @@ struct Camera {
   glm::dquat orientation{1, 0, 0, 0};  ///< world axes -> view axes
   glm::dvec3 target{0.0};              ///< world point in the middle of the picture [Å]
   double distance = 100;               ///< eye to target [Å] (orthographic: fixes the scale through fovY)
+  std::optional<double> nearest;       ///< nothing closer to the eye's plane than this is seen [Å]
   double zoom = 1;                     ///< magnifies the picture about its middle; the viewpoint stays
 };
 

@@ -90,7 +90,7 @@ ReadModels readChemComp(Block& block, const ModelChoice& choice, Oddities& oddit
   read.modelCount = 1;
   std::vector<int> numbers{1};
   chooseModels(numbers, choice, oddities);
-  Molecule molecule = builder.finish().molecule;
+  Molecule molecule = builder.finish();
   molecule.name = id;
   addBonds(block, molecule);
   read.models.push_back(std::move(molecule));

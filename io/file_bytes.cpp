@@ -46,28 +46,6 @@ class Descriptor {
   int fd_;
 };
 
-std::string readBytes(const std::filesystem::path& path) {
-  const Descriptor file(path);
-  struct stat status {};
-  if (::fstat(file.get(), &status) != 0) fail(path, std::strerror(errno));
-  if (S_ISDIR(status.st_mode)) fail(path, "is a folder: name a structure file in it");
-  std::string bytes;
-  std::size_t size = 0;
-  bytes.resize(S_ISREG(status.st_mode) ? static_cast<std::size_t>(std::max<off_t>(status.st_size, 0)) + 1
-                                       : kChunk);
-  for (;;) {
-    if (size == bytes.size()) bytes.resize(size * 2);
-    const ssize_t got = ::read(file.get(), bytes.data() + size, bytes.size() - size);
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) fail(path, fmt::format("cannot be read ({})", std::strerror(errno)));
-    if (got == 0) break;
-    size += static_cast<std::size_t>(got);
-    if (size > kMaxBytes) fail(path, "is larger than 4 GiB: split it");
-  }
-  bytes.resize(size);
-  return bytes;
-}
-
 bool startsWith(std::string_view bytes, std::string_view prefix) {
   return bytes.substr(0, prefix.size()) == prefix;
 }
@@ -157,8 +135,33 @@ std::string inflateAll(const std::filesystem::path& path, const std::string& pac
 
 }  // namespace
 
+std::string readBytes(const std::filesystem::path& path) {
+  const Descriptor file(path);
+  struct stat status {};
+  if (::fstat(file.get(), &status) != 0) fail(path, std::strerror(errno));
+  if (S_ISDIR(status.st_mode)) fail(path, "is a folder: name a structure file in it");
+  std::string bytes;
+  std::size_t size = 0;
+  bytes.resize(S_ISREG(status.st_mode) ? static_cast<std::size_t>(std::max<off_t>(status.st_size, 0)) + 1
+                                       : kChunk);
+  for (;;) {
+    if (size == bytes.size()) bytes.resize(size * 2);
+    const ssize_t got = ::read(file.get(), bytes.data() + size, bytes.size() - size);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) fail(path, fmt::format("cannot be read ({})", std::strerror(errno)));
+    if (got == 0) break;
+    size += static_cast<std::size_t>(got);
+    if (size > kMaxBytes) fail(path, "is larger than 4 GiB: split it");
+  }
+  bytes.resize(size);
+  return bytes;
+}
+
 std::string readText(const std::filesystem::path& path) {
-  std::string bytes = readBytes(path);
+  return textOf(readBytes(path), path);
+}
+
+std::string textOf(std::string bytes, const std::filesystem::path& path) {
   if (bytes.empty()) fail(path, "is empty: fetch it again");
   if (startsWith(bytes, "\x1f\x8b")) bytes = inflateAll(path, bytes);
   if (bytes.empty()) fail(path, "is empty once decompressed: fetch it again");

@@ -10,4 +10,9 @@ namespace meniscus {
 /// unreadable, truncated or damaged gzip, compressed in another way, or larger than 4 GiB (decompressed).
 std::string readText(const std::filesystem::path& path);
 
+/// The two steps of it: the bytes as they are in the file, and what they mean; `path` is only named in
+/// errors.
+std::string readBytes(const std::filesystem::path& path);
+std::string textOf(std::string bytes, const std::filesystem::path& path);
+
 }  // namespace meniscus

@@ -19,6 +19,12 @@ std::vector<std::size_t> chooseModels(std::vector<int>& numbers, const ModelChoi
   }
   std::vector<std::size_t> chosen(choice.all ? numbers.size() : 1);
   std::iota(chosen.begin(), chosen.end(), std::size_t{0});
+  if (choice.index) {
+    if (*choice.index < 0 || static_cast<std::size_t>(*choice.index) >= numbers.size())
+      throw UsageError(fmt::format("no model at index {}: the file has {}, counted from 0", *choice.index,
+                                   numbers.size()));
+    return {static_cast<std::size_t>(*choice.index)};
+  }
   if (choice.all || !choice.number) return chosen;
   const auto found = std::find(numbers.begin(), numbers.end(), *choice.number);
   if (found == numbers.end()) {

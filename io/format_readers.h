@@ -13,6 +13,7 @@ namespace meniscus {
 struct ModelChoice {
   std::optional<int> number;  ///< nothing = the first, unless `all`
   bool all = false;
+  std::optional<int> index = std::nullopt;  ///< position in the file, from 0; before `number`
 };
 
 /// Models as read, before any atom is filtered out. Names are empty if the file gives none.
@@ -22,7 +23,7 @@ struct ReadModels {
 };
 
 /// Positions of the chosen models in a list of the numbers that a file gives them. Numbers that repeat are
-/// replaced by 1, 2, ... Throws UsageError if the chosen number does not occur.
+/// replaced by 1, 2, ... Throws UsageError if the chosen one does not occur.
 std::vector<std::size_t> chooseModels(std::vector<int>& numbers, const ModelChoice& choice,
                                       Oddities& oddities);
 

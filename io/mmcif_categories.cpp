@@ -143,6 +143,44 @@ std::vector<AssemblyRecord> readAssemblies(gemmi::cif::Block& block, Oddities& o
   return records;
 }
 
+std::vector<SecondaryRange> readSecondary(gemmi::cif::Block& block, bool labelIds) {
+  std::vector<SecondaryRange> ranges;
+  const std::string chain = labelIds ? "_label_asym_id" : "_auth_asym_id";
+  const std::string number = labelIds ? "_label_seq_id" : "_auth_seq_id";
+  const auto read = [&](const char* category, const char* type) {
+    for (const Table::Row row :
+         block.find(category, {type, "beg" + chain, "beg" + number, "end" + chain, "end" + number,
+                               "?pdbx_beg_PDB_ins_code", "?pdbx_end_PDB_ins_code"})) {
+      const std::string kind = toLower(cifText(row[0]));
+      const bool sheet = type[0] == 's' || startsWith(kind, "strn");
+      if (!sheet && !startsWith(kind, "helx")) continue;
+      const auto first = cifInteger(cifText(row[2])), last = cifInteger(cifText(row[4]));
+      if (!first || !last) continue;
+      SecondaryRange range;
+      range.kind = sheet ? SecondaryStructure::strand : SecondaryStructure::helix;
+      range.firstChain = cifText(row[1]);
+      range.lastChain = cifText(row[3]);
+      range.firstNumber = first->value;
+      range.lastNumber = last->value;
+      if (const auto code = valueOf(row, 5); !code.empty()) range.firstInsertion = code[0];
+      if (const auto code = valueOf(row, 6); !code.empty()) range.lastInsertion = code[0];
+      ranges.push_back(std::move(range));
+    }
+  };
+  read("_struct_conf.", "conf_type_id");
+  read("_struct_sheet_range.", "sheet_id");
+  return ranges;
+}
+
+std::string readSpaceGroup(gemmi::cif::Block& block) {
+  for (const char* tag : {"_symmetry.space_group_name_H-M", "_space_group.name_H-M_alt"}) {
+    for (const std::string& name : block.find_values(tag)) {
+      if (!cifText(name).empty()) return std::string(cifText(name));
+    }
+  }
+  return {};
+}
+
 std::optional<UnitCell> readCell(gemmi::cif::Block& block) {
   for (const Table::Row row : block.find(
            "_cell.", {"length_a", "length_b", "length_c", "angle_alpha", "angle_beta", "angle_gamma"})) {

@@ -10,6 +10,7 @@
 #include "io/assembly_records.h"
 #include "io/connections.h"
 #include "io/oddities.h"
+#include "io/secondary_records.h"
 
 namespace meniscus {
 
@@ -20,8 +21,14 @@ std::vector<NamedBond> readConnections(gemmi::cif::Block& block, bool labelIds);
 /// _pdbx_struct_assembly_gen with its operators; chains are label_asym_ids.
 std::vector<AssemblyRecord> readAssemblies(gemmi::cif::Block& block, Oddities& oddities);
 
+/// Helices and strands of _struct_conf and _struct_sheet_range. Addresses use label ids if `labelIds`.
+std::vector<SecondaryRange> readSecondary(gemmi::cif::Block& block, bool labelIds);
+
 /// _cell, if it is a real one.
 std::optional<UnitCell> readCell(gemmi::cif::Block& block);
+
+/// Hermann-Mauguin symbol; empty if none is given.
+std::string readSpaceGroup(gemmi::cif::Block& block);
 
 /// Is it a computed model by its categories, its id or its software?
 bool saysPredicted(gemmi::cif::Block& block);

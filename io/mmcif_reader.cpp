@@ -23,6 +23,7 @@
 #include "io/guess_element.h"
 #include "io/mmcif_categories.h"
 #include "io/pdb_text.h"
+#include "io/secondary_records.h"
 
 namespace meniscus {
 namespace {
@@ -64,6 +65,7 @@ enum Item : std::size_t {
   kB,
   kCharge,
   kModel,
+  kLabelEntity,
   kItemCount
 };
 
@@ -87,7 +89,8 @@ Table findAtomSite(Block& block) {
                                     "?occupancy",
                                     "?B_iso_or_equiv",
                                     "?pdbx_formal_charge",
-                                    "?pdbx_PDB_model_num"});
+                                    "?pdbx_PDB_model_num",
+                                    "?label_entity_id"});
 }
 
 /// Direct access to the columns of _atom_site, in a loop or as single values.
@@ -237,6 +240,8 @@ AtomRecord readRow(const AtomSite& site, std::size_t row, const Naming& naming, 
   AtomRecord atom;
   atom.chain = either(site, naming.asym, naming.otherAsym, row);
   atom.subchain = either(site, kLabelAsym, kAuthAsym, row);
+  atom.entity = site.text(kLabelEntity, row);
+  if (const auto number = cifInteger(site.text(kLabelSeq, row))) atom.labelNumber = number->value;
   atom.residueName = either(site, naming.comp, naming.otherComp, row);
   atom.name = either(site, naming.atom, naming.otherAtom, row);
   if (const auto code = site.text(kInsertion, row); !code.empty()) atom.insertionCode = code[0];
@@ -284,6 +289,7 @@ ReadModels readAtomSite(const std::string& text, Block& block, const ModelChoice
   const bool labelIds = !site.has(kAuthAsym);
   const std::vector<NamedBond> named = readConnections(block, labelIds);
   const std::vector<AssemblyRecord> assemblies = readAssemblies(block, oddities);
+  const std::vector<SecondaryRange> secondary = readSecondary(block, labelIds);
   const std::vector<std::size_t> chosen = chooseModels(column.numbers, choice, oddities);
   std::vector<MoleculeBuilder> builders(chosen.size(), MoleculeBuilder(oddities));
   std::vector<int> builderOf(column.numbers.size(), -1);
@@ -300,13 +306,17 @@ ReadModels readAtomSite(const std::string& text, Block& block, const ModelChoice
   }
   const bool predicted = saysPredicted(block);
   for (std::size_t i = 0; i < chosen.size(); ++i) {
-    BuiltMolecule built = builders[i].finish();
-    Molecule& molecule = built.molecule;
+    Molecule molecule = builders[i].finish();
     molecule.name = entryName(block);
     molecule.model = column.numbers[chosen[i]];
+    molecule.modelIndex = static_cast<std::int32_t>(chosen[i]);
     molecule.cell = readCell(block);
+    molecule.spaceGroup = readSpaceGroup(block);
     addNamedBonds(molecule, named, oddities);
-    addAssemblies(molecule, assemblies, built.residueSubchain, oddities);
+    std::vector<std::string> subchains;
+    for (const Residue& residue : molecule.residues) subchains.push_back(residue.subchain);
+    addAssemblies(molecule, assemblies, subchains, oddities);
+    addSecondary(molecule, secondary, oddities);
     if (predicted) markPredicted(molecule, oddities);
     read.models.push_back(std::move(molecule));
   }

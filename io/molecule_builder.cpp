@@ -109,7 +109,7 @@ std::uint32_t MoleculeBuilder::residueOf(const AtomRecord& atom) {
   if (current_ != kNone) {
     const PendingResidue& now = residues_[current_];
     const bool sameName = now.residue.name == atom.residueName && chains_[now.residue.chain] == atom.chain &&
-                          now.subchain == atom.subchain;
+                          now.residue.subchain == atom.subchain;
     if (sameName && atom.residueNumber) {
       if (currentIsNumbered_ && now.residue.number == *atom.residueNumber &&
           now.residue.insertionCode == atom.insertionCode) {
@@ -144,7 +144,9 @@ std::uint32_t MoleculeBuilder::residueOf(const AtomRecord& atom) {
   pending.residue.insertionCode = atom.insertionCode;
   pending.residue.hetero = atom.hetero;
   pending.residue.chain = chain;
-  pending.subchain = atom.subchain;
+  pending.residue.subchain = atom.subchain;
+  pending.residue.entity = atom.entity;
+  pending.residue.labelNumber = atom.labelNumber;
   residues_.push_back(std::move(pending));
   lastInResidue_.push_back(kNone);
   return current_ = found->second;
@@ -163,15 +165,14 @@ void MoleculeBuilder::reorderAtoms(const std::vector<std::uint32_t>& order) {
   if (anyAnisotropy_) permute(anisotropies_, order);
 }
 
-BuiltMolecule MoleculeBuilder::finish() {
+Molecule MoleculeBuilder::finish() {
   // Residues by chain, both in order of first appearance.
   std::vector<std::uint32_t> residueOrder(residues_.size());
   std::iota(residueOrder.begin(), residueOrder.end(), 0u);
   std::stable_sort(residueOrder.begin(), residueOrder.end(), [this](std::uint32_t a, std::uint32_t b) {
     return residues_[a].residue.chain < residues_[b].residue.chain;
   });
-  BuiltMolecule built;
-  Molecule& m = built.molecule;
+  Molecule m;
   for (const std::string& name : chains_) m.chains.push_back({name, {}});
   std::vector<std::uint32_t> nextOf(residues_.size());
   std::vector<std::uint32_t> rankOf(residues_.size());
@@ -185,7 +186,6 @@ BuiltMolecule MoleculeBuilder::finish() {
     IndexRange& range = m.chains[pending.residue.chain].residues;
     if (range.count++ == 0) range.first = rank;
     m.residues.push_back(std::move(pending.residue));
-    built.residueSubchain.push_back(std::move(pending.subchain));
   }
   if (anyAnisotropy_) anisotropies_.resize(atomCount());
   std::vector<std::uint32_t> order(atomCount());
@@ -213,7 +213,7 @@ BuiltMolecule MoleculeBuilder::finish() {
                     std::span(m.elements).subspan(residue.atoms.first, residue.atoms.count));
   }
   demoteFreeMonomers(m);
-  return built;
+  return m;
 }
 
 }  // namespace meniscus

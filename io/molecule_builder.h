@@ -16,8 +16,10 @@ namespace meniscus {
 
 /// One atom as a file states it. Text is copied by MoleculeBuilder::add().
 struct AtomRecord {
-  std::string_view chain;     ///< author chain id
-  std::string_view subchain;  ///< label_asym_id; empty in PDB files
+  std::string_view chain;                   ///< author chain id
+  std::string_view subchain;                ///< label_asym_id; empty in PDB files
+  std::string_view entity;                  ///< label_entity_id; empty in PDB files
+  std::optional<std::int32_t> labelNumber;  ///< label_seq_id
   std::string_view residueName;
   std::optional<std::int32_t> residueNumber;  ///< nothing: the builder numbers on
   char insertionCode = ' ';
@@ -34,12 +36,6 @@ struct AtomRecord {
   std::size_t line = 0;  ///< for notes and errors; 0 = unknown
 };
 
-/// A Molecule, and what is needed to resolve the records that refer to its parts.
-struct BuiltMolecule {
-  Molecule molecule;
-  std::vector<std::string> residueSubchain;  ///< label_asym_id of each residue
-};
-
 class MoleculeBuilder {
  public:
   explicit MoleculeBuilder(Oddities& oddities) : oddities_(oddities) {}
@@ -48,12 +44,11 @@ class MoleculeBuilder {
   /// Throws InputError, without the file's name, if the position is not finite or beyond 1e7 Å.
   void add(const AtomRecord& atom);
   std::size_t atomCount() const { return positions_.size(); }
-  BuiltMolecule finish();
+  Molecule finish();
 
  private:
   struct PendingResidue {
     Residue residue;
-    std::string subchain;
     std::uint32_t atomCount = 0;
   };
   struct Key {

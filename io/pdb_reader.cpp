@@ -13,6 +13,7 @@
 #include "io/connections.h"
 #include "io/format_readers.h"
 #include "io/pdb_text.h"
+#include "io/secondary_records.h"
 
 namespace meniscus {
 namespace {
@@ -72,7 +73,7 @@ Molecule buildModel(const gemmi::Structure& structure, const MendedPdb& mended, 
     record.line = line.line;
     builder.add(record);
   }
-  return builder.finish().molecule;
+  return builder.finish();
 }
 
 AtomAddress toAddress(const gemmi::AtomAddress& from) {
@@ -127,6 +128,22 @@ std::optional<UnitCell> toCell(const gemmi::UnitCell& cell) {
   return UnitCell{cell.a, cell.b, cell.c, cell.alpha, cell.beta, cell.gamma};
 }
 
+std::vector<SecondaryRange> toSecondary(const gemmi::Structure& structure) {
+  std::vector<SecondaryRange> ranges;
+  const auto add = [&](SecondaryStructure kind, const gemmi::AtomAddress& first,
+                       const gemmi::AtomAddress& last) {
+    const gemmi::SeqId& a = first.res_id.seqid;
+    const gemmi::SeqId& b = last.res_id.seqid;
+    if (!a.num.has_value() || !b.num.has_value()) return;
+    ranges.push_back({kind, first.chain_name, last.chain_name, *a.num, *b.num, a.icode, b.icode});
+  };
+  for (const gemmi::Helix& helix : structure.helices) add(SecondaryStructure::helix, helix.start, helix.end);
+  for (const gemmi::Sheet& sheet : structure.sheets)
+    for (const gemmi::Sheet::Strand& strand : sheet.strands)
+      add(SecondaryStructure::strand, strand.start, strand.end);
+  return ranges;
+}
+
 std::vector<int> modelNumbers(const PdbOutline& outline) {
   std::vector<int> numbers;
   int next = 1;
@@ -148,6 +165,8 @@ ReadModels readPdb(const std::string& text, const ModelChoice& choice, Oddities&
   std::vector<NamedBond> named;
   std::vector<AssemblyRecord> assemblies;
   std::optional<UnitCell> cell;
+  std::string spaceGroup;
+  std::vector<SecondaryRange> secondary;
   bool first = true;
   for (const std::size_t i : chooseModels(numbers, choice, oddities)) {
     MendedPdb mended = mendPdbModel(text, outline.models[i], oddities);
@@ -158,12 +177,17 @@ ReadModels readPdb(const std::string& text, const ModelChoice& choice, Oddities&
       named = toBonds(structure);
       assemblies = toAssemblies(structure);
       cell = toCell(structure.cell);
+      spaceGroup = outline.spaceGroup;
+      secondary = toSecondary(structure);
     }
     first = false;
     Molecule molecule = buildModel(structure, mended, oddities);
     molecule.name = outline.entryId;
     molecule.model = numbers[i];
+    molecule.modelIndex = static_cast<std::int32_t>(i);
     molecule.cell = cell;
+    molecule.spaceGroup = spaceGroup;
+    addSecondary(molecule, secondary, oddities);
     addNamedBonds(molecule, named, oddities);
     addSerialBonds(molecule, outline.conect, oddities);
     std::vector<std::string> chainOfResidue;

@@ -155,7 +155,9 @@ void noteHeader(std::string_view line, PdbOutline& outline) {
     outline.saysPredicted |= namesPredictor(line);
   } else if (isRecord(line, "CRYST1")) {
     appendCard(outline.header, line, 54);
-  } else if (isRecord(line, "SSBOND") || isRecord(line, "LINK ")) {
+    outline.spaceGroup = trim(field(line, 55, 11));
+  } else if (isRecord(line, "SSBOND") || isRecord(line, "LINK ") || isRecord(line, "HELIX ") ||
+             isRecord(line, "SHEET ")) {
     appendCard(outline.header, line);
   } else if (isRecord(line, "HEADER")) {
     outline.entryId = trim(field(line, 62, 4));

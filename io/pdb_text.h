@@ -23,8 +23,9 @@ struct PdbModelSpan {
 /// What a first walk over the lines finds.
 struct PdbOutline {
   std::vector<PdbModelSpan> models;  ///< those that have atoms
-  std::string header;                ///< CRYST1, REMARK 350, SSBOND and LINK, for gemmi
+  std::string header;                ///< CRYST1, REMARK 350, HELIX, SHEET, SSBOND and LINK, for gemmi
   std::string entryId;               ///< of HEADER; may be empty
+  std::string spaceGroup;            ///< of CRYST1; may be empty
   std::vector<SerialBond> conect;
   bool saysPredicted = false;   ///< the title or a remark names a program that predicts structures
   bool saysExperiment = false;  ///< EXPDTA names an experiment

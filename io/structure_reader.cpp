@@ -100,10 +100,10 @@ void applyOptions(Molecule& m, const StructureOptions& options) {
   keepAtoms(m, keep);
 }
 
-ReadModels readModels(const std::filesystem::path& path, const StructureOptions& options,
+ReadModels readModels(std::string bytes, const std::filesystem::path& path, const StructureOptions& options,
                       Oddities& oddities) {
-  std::string text = readText(path);
-  const ModelChoice choice{options.model, options.allModels};
+  std::string text = textOf(std::move(bytes), path);
+  const ModelChoice choice{options.model, options.allModels, options.modelIndex};
   try {
     mendLineEnds(text, oddities);
     const StructureKind kind = detectKind(text, extensionOf(path));
@@ -126,8 +126,13 @@ ReadModels readModels(const std::filesystem::path& path, const StructureOptions&
 
 StructureFile readStructure(const std::filesystem::path& path, const StructureOptions& options,
                             Logger& logger) {
+  return readStructureBytes(readBytes(path), path, options, logger);
+}
+
+StructureFile readStructureBytes(std::string bytes, const std::filesystem::path& path,
+                                 const StructureOptions& options, Logger& logger) {
   Oddities oddities;
-  ReadModels read = readModels(path, options, oddities);
+  ReadModels read = readModels(std::move(bytes), path, options, oddities);
   StructureFile file;
   file.modelCount = read.modelCount;
   for (Molecule& molecule : read.models) {

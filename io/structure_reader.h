@@ -22,8 +22,9 @@ enum class Altlocs : std::uint8_t {
 enum class Waters : std::uint8_t { on, off, automatic };  ///< automatic: off unless nothing else is there
 
 struct StructureOptions {
-  std::optional<int> model;  ///< model number; nothing = the first model
-  bool allModels = false;    ///< read every model
+  std::optional<int> model;       ///< model number; nothing = the first model
+  std::optional<int> modelIndex;  ///< position of the model in the file, from 0; before `model`
+  bool allModels = false;         ///< read every model
   Altlocs altlocs = Altlocs::all;
   char altloc = 'A';  ///< for Altlocs::named
   bool hydrogens = true;
@@ -41,6 +42,10 @@ struct StructureFile {
 /// UsageError if the model number or the selection's syntax is not valid.
 StructureFile readStructure(const std::filesystem::path& path, const StructureOptions& options,
                             Logger& logger);
+
+/// The same of a file's bytes, plain or gzipped; `name` stands for the file.
+StructureFile readStructureBytes(std::string bytes, const std::filesystem::path& name,
+                                 const StructureOptions& options, Logger& logger);
 
 /// Atoms of a molecule that a gemmi CID selection matches, ascending. Throws UsageError on bad syntax.
 std::vector<std::uint32_t> selectAtoms(const Molecule& molecule, const std::string& cid);

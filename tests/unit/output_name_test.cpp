@@ -29,22 +29,23 @@ TEST(OutputPattern, fillsInStemAndModel) {
   const OutputPattern pattern("out/{stem}-{model}.png");
   EXPECT_TRUE(pattern.namesStem());
   EXPECT_TRUE(pattern.namesModel());
-  EXPECT_EQ(pattern.nameFor("x/1l2y.pdb.gz", 38), "out/1l2y-38.png");
-  EXPECT_EQ(OutputPattern("{model}/{stem}{stem}.png").nameFor("a.pdb", -2), "-2/aa.png");
+  EXPECT_EQ(pattern.nameFor("x/1l2y.pdb.gz", {38}), "out/1l2y-38.png");
+  EXPECT_EQ(OutputPattern("{model}/{stem}{stem}.png").nameFor("a.pdb", {-2}), "-2/aa.png");
 }
 
 TEST(OutputPattern, takesPlainNamesAndDoubledBraces) {
   const OutputPattern plain("a.png");
   EXPECT_FALSE(plain.namesStem());
   EXPECT_FALSE(plain.namesModel());
-  EXPECT_EQ(plain.nameFor("b.pdb", 1), "a.png");
+  EXPECT_EQ(plain.nameFor("b.pdb", {}), "a.png");
   const OutputPattern braces("{{stem}}}.png");
   EXPECT_FALSE(braces.namesStem());
-  EXPECT_EQ(braces.nameFor("b.pdb", 1), "{stem}}.png");
+  EXPECT_EQ(braces.nameFor("b.pdb", {}), "{stem}}.png");
 }
 
 TEST(OutputPattern, refusesUnknownPlaceholders) {
-  EXPECT_NE(usageErrorOf([] { OutputPattern("{name}.png"); }).find("{stem} and {model}"), std::string::npos);
+  EXPECT_NE(usageErrorOf([] { OutputPattern("{name}.png"); }).find("{stem}, {model}, {state} and {frame}"),
+            std::string::npos);
   EXPECT_NE(usageErrorOf([] { OutputPattern("{}.png"); }).find("{}"), std::string::npos);
   EXPECT_NE(usageErrorOf([] { OutputPattern("{stem.png"); }).find("lacks a }"), std::string::npos);
 }

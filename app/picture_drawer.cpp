@@ -1,0 +1,189 @@
+#include "app/picture_drawer.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "app/commands.h"
+#include "core/error.h"
+#include "core/mesh/surface_mesh.h"
+#include "core/primitives.h"
+#include "io/image_writer.h"
+#include "io/mesh_file.h"
+
+namespace meniscus {
+namespace {
+
+/// Passes rows on and counts the time that takes.
+class TimedSink : public RowSink {
+ public:
+  TimedSink(RowSink& sink, double& seconds) : sink_(sink), seconds_(seconds) {}
+  void writeRows(std::span<const std::byte> rows) override {
+    const Timed timed(seconds_);
+    sink_.writeRows(rows);
+  }
+
+ private:
+  RowSink& sink_;
+  double& seconds_;
+};
+
+PictureReport reportOn(const Picture& picture) {
+  PictureReport report;
+  report.input = picture.input;
+  report.output = picture.output;
+  const Molecule* counted = nullptr;
+  for (const SceneObject& object : picture.scene.objects) {
+    if (object.molecule.get() == counted) continue;
+    counted = object.molecule.get();
+    report.atoms += counted->atomCount();
+    report.bonds += counted->bonds.size();
+  }
+  return report;
+}
+
+ImageFileOptions imageOptionsFor(const Picture& picture) {
+  constexpr std::size_t kExactInFloat = std::size_t{1} << 24;
+  const RenderOptions& options = picture.options;
+  ImageFileOptions image;
+  image.size = options.size;
+  image.format = imageTypeOf(picture.output) == ImageType::exr ? PixelFormat::rgbaFloat
+                 : options.bitDepth == 16                      ? PixelFormat::rgba16
+                                                               : PixelFormat::rgba8;
+  image.alpha = picture.scene.background.transparent;
+  image.layers = options.layers;
+  image.wideIds = countIds(picture.scene) > kExactInFloat;
+  image.dpi = options.dpi;
+  image.metadata = {{"Software", std::string("Meniscus ") + version()},
+                    {"Source", picture.source},
+                    {"Comment", picture.command}};
+  return image;
+}
+
+RenderSettings settingsFor(const RenderOptions& options) {
+  RenderSettings settings;
+  settings.samples = options.samples;
+  settings.shadows = options.shadows;
+  settings.occlusion = options.occlusion;
+  settings.lines = options.lines;
+  settings.depthUnsharp = options.depthUnsharp;
+  settings.fog = options.fog;
+  settings.surface = options.surface;
+  settings.quadrics = options.quadrics;
+  return settings;
+}
+
+Lighting lightFor(const RenderOptions& options) {
+  Lighting light = options.occlusion.on ? ambientLighting() : Lighting{};
+  light.key.intensity = options.keyLight.value_or(light.key.intensity);
+  light.fill.intensity = options.fillLight.value_or(light.fill.intensity);
+  light.ambient = options.ambientLight.value_or(light.ambient);
+  light.specular = options.highlight.value_or(light.specular);
+  return light;
+}
+
+}  // namespace
+
+void PictureDrawer::draw(Picture picture) {
+  PictureReport report = reportOn(picture);
+  ImageFileOptions imageOptions;
+  std::unique_ptr<ImageFile> image;
+  if (!picture.output.empty()) {
+    imageOptions = imageOptionsFor(picture);
+    image = ImageFile::create(picture.output, imageOptions);
+  }
+  if (!picture.exported.empty()) {
+    picture.primitives = primitivesOf(picture);
+    exportMesh(picture);
+  }
+  if (!image) return;
+  TimedSink sink(*image, report_.encodeSeconds);
+  render(picture, sink, {imageOptions.format, imageOptions.layers},
+         fmt::format("{} -> {}", picture.input, picture.output));
+  {
+    const Timed timed(report_.encodeSeconds);
+    image->finish();
+  }
+  report.spheres = drawn_.spheres;
+  report.cylinders = drawn_.cylinders;
+  report.ellipsoids = drawn_.ellipsoids;
+  report.metaballs = drawn_.metaballs;
+  report_.pictures.push_back(std::move(report));
+}
+
+// Of each object that is drawn so, in the order of the scene.
+void PictureDrawer::exportMesh(const Picture& picture) {
+  const Timed timed(report_.meshSeconds);
+  MeshOptions mesh;
+  mesh.spacing = picture.options.meshSpacing.value_or(mesh.spacing);
+  std::vector<SurfaceMesh> surfaces;
+  std::size_t triangles = 0;
+  for (const MetaballField& field : picture.primitives->surfaces) {
+    surfaces.push_back(meshSurface(field, mesh));
+    triangles += surfaces.back().triangles.size();
+  }
+  if (triangles == 0)
+    throw InputError(
+        fmt::format("cannot write '{}': the field nowhere reaches the level, so there is no "
+                    "surface; give a smaller --level or --mesh-spacing",
+                    picture.exported));
+  writeMeshFile(picture.exported, surfaces, picture.primitives->origin);
+}
+
+void PictureDrawer::drawTo(Picture picture, RowSink& sink, const std::string& label) {
+  TimedSink timed(sink, report_.encodeSeconds);
+  render(picture, timed, {PixelFormat::rgba8}, label);
+}
+
+void PictureDrawer::render(Picture& picture, RowSink& sink, const PixelLayout& layout,
+                           const std::string& label) {
+  const RenderOptions& options = picture.options;
+  Scene& scene = picture.scene;
+  std::shared_ptr<const Primitives> primitives =
+      picture.primitives ? picture.primitives : primitivesOf(picture);
+  scene.objects.clear();
+  drawn_ = {};
+  drawn_.spheres = primitives->spheres.size();
+  drawn_.cylinders = primitives->cylinders.size();
+  drawn_.ellipsoids = primitives->ellipsoids.size();
+  for (const MetaballField& field : primitives->surfaces) drawn_.metaballs += field.balls.size();
+
+  const View view = makeView(scene.camera, options.size, primitives->bounds());
+  progress_.start(label);
+  Renderer& draw = renderer();
+  if (primitives != shown_) {
+    shown_.reset();
+    draw.setPrimitives(primitives);
+    shown_ = std::move(primitives);
+  }
+  draw.renderPicture(view, lightFor(options), scene.background, settingsFor(options), layout, sink,
+                     [this](double share) {
+                       if (watch) watch();
+                       progress_.update(share);
+                     });
+}
+
+std::shared_ptr<const Primitives> PictureDrawer::primitivesOf(const Picture& picture) {
+  const Timed timed(report_.primitivesSeconds);
+  return std::make_shared<const Primitives>(buildPrimitives(picture.scene, picture.options.lines.groups));
+}
+
+Renderer& PictureDrawer::renderer() {
+  if (renderer_ != nullptr) return *renderer_;
+  const Timed timed(report_.contextSeconds);
+  context_ = Context::create(options_.backend);
+  RendererOptions rendererOptions;
+  rendererOptions.shaderDir = options_.shaderDir;
+  rendererOptions.timePasses = options_.explain;
+  renderer_ = std::make_unique<Renderer>(rendererOptions);
+  return *renderer_;
+}
+
+void PictureDrawer::finishReport() {
+  if (renderer_ == nullptr) return;
+  report_.backend = context_->name();
+  report_.renderer = context_->rendererName();
+  report_.render = renderer_->stats();
+}
+
+}  // namespace meniscus

@@ -1,0 +1,48 @@
+#pragma once
+// Draws pictures, one after the other, with one OpenGL context and its compiled shaders, which are made when
+// the first picture is ready: what is wrong with an input or an output is said without waiting for them.
+
+#include <functional>
+#include <memory>
+
+#include "app/picture.h"
+#include "app/progress.h"
+#include "app/run_report.h"
+#include "render/gl/context.h"
+#include "render/renderer.h"
+
+namespace meniscus {
+
+class PictureDrawer {
+ public:
+  /// The backend, the shaders and what is timed are taken from `options`.
+  PictureDrawer(const RenderOptions& options, RunReport& report, Progress& progress)
+      : options_(options), report_(report), progress_(progress) {}
+
+  /// Called now and then while a picture is drawn; what it throws ends the picture, of which nothing is left.
+  std::function<void()> watch;
+
+  /// Writes the picture's file. Throws Error; then nothing is written.
+  void draw(Picture picture);
+  /// The same, its rows to `sink` as 8-bit sRGB; progress says `label`.
+  void drawTo(Picture picture, RowSink& sink, const std::string& label);
+  /// What the picture's scene becomes, for several pictures of it.
+  std::shared_ptr<const Primitives> primitivesOf(const Picture& picture);
+  /// Fills in what the report knows of the context and the renderer.
+  void finishReport();
+
+ private:
+  void exportMesh(const Picture& picture);
+  void render(Picture& picture, RowSink& sink, const PixelLayout& layout, const std::string& label);
+  Renderer& renderer();
+
+  const RenderOptions& options_;
+  RunReport& report_;
+  Progress& progress_;
+  PictureReport drawn_;                      // the counts of the picture that is being drawn
+  std::shared_ptr<const Primitives> shown_;  // what the renderer holds
+  std::unique_ptr<Context> context_;
+  std::unique_ptr<Renderer> renderer_;
+};
+
+}  // namespace meniscus

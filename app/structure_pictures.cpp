@@ -1,0 +1,236 @@
+#include "app/structure_pictures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <glm/trigonometric.hpp>
+#include <iterator>
+#include <set>
+#include <utility>
+
+#include "app/film.h"
+#include "app/output_name.h"
+#include "app/run_report.h"
+#include "core/bonds.h"
+#include "core/camera_fit.h"
+#include "core/displacement.h"
+#include "core/error.h"
+#include "core/primitives.h"
+#include "io/structure_reader.h"
+
+namespace meniscus {
+namespace {
+
+using Molecules = std::vector<std::shared_ptr<const Molecule>>;
+using Objects = std::vector<SceneObject>;
+
+class StructurePictures {
+ public:
+  StructurePictures(const std::string& file, const RenderOptions& options) : file_(file), options_(options) {}
+  Preparation make(std::string bytes);
+
+ private:
+  Molecules readMolecules(std::string bytes);
+  bool draws(Representation representation) const;
+  bool drawsBonds() const;
+  SceneObject placedObject(std::shared_ptr<const Molecule> molecule) const;
+  Objects objectsFor(const std::shared_ptr<const Molecule>& molecule) const;
+  Camera cameraFor(const std::vector<Objects>& models) const;
+  void addPicture(Scene scene, int model);
+
+  const std::string& file_;
+  const RenderOptions& options_;
+  Preparation made_;
+};
+
+Preparation StructurePictures::make(std::string bytes) {
+  const Molecules molecules = readMolecules(std::move(bytes));
+  double atoms = 0;
+  for (const auto& molecule : molecules) atoms += static_cast<double>(molecule->atomCount());
+  requireMemory(file_, atoms, glm::dvec3(options_.replicate));
+  std::vector<Objects> models;
+  for (const auto& molecule : molecules) models.push_back(objectsFor(molecule));
+  Scene scene;
+  scene.background = options_.background;
+  scene.camera = cameraFor(models);
+
+  const OutputPattern pattern(options_.output.empty() ? options_.exportMesh : options_.output);
+  if (!pattern.namesModel() && !isFilm(options_.output)) {
+    for (Objects& objects : models)
+      std::move(objects.begin(), objects.end(), std::back_inserter(scene.objects));
+    addPicture(std::move(scene), molecules.front()->model);
+    return std::move(made_);
+  }
+  std::set<int> numbers;
+  for (const auto& molecule : molecules) numbers.insert(molecule->model);
+  if (numbers.size() < molecules.size())
+    throw InputError(
+        fmt::format("'{}': has several models of the same number, so {{model}} cannot tell them apart; "
+                    "choose one with --model",
+                    file_));
+  for (Objects& objects : models) {
+    const int model = objects.front().molecule->model;
+    scene.objects = std::move(objects);
+    addPicture(scene, model);
+  }
+  return std::move(made_);
+}
+
+void StructurePictures::addPicture(Scene scene, int model) {
+  Picture picture;
+  picture.input = file_;
+  picture.place.model = model;
+  if (!options_.output.empty()) picture.output = OutputPattern(options_.output).nameFor(file_, picture.place);
+  if (!options_.exportMesh.empty())
+    picture.exported = OutputPattern(options_.exportMesh).nameFor(file_, picture.place);
+  picture.options = options_;
+  picture.scene = std::move(scene);
+  // The names of folders and of the output are left out: they say nothing about the picture, and the same
+  // picture should be the same bytes wherever it is made.
+  picture.source = std::filesystem::path(file_).filename().string();
+  picture.command = "meniscus render " + picture.source + options_.pictureOptions;
+  made_.pictures.push_back(std::move(picture));
+}
+
+Molecules StructurePictures::readMolecules(std::string bytes) {
+  Logger logger;
+  StructureFile structure;
+  {
+    const Timed timed(made_.parseSeconds);
+    structure = readStructureBytes(std::move(bytes), file_, options_.structure, logger);
+  }
+  Molecules molecules;
+  for (Molecule& molecule : structure.models) {
+    if (drawsBonds()) {
+      const Timed timed(made_.bondsSeconds);
+      addMissingBonds(molecule, logger);
+    }
+    if (draws(Representation::ellipsoids)) noteOddDisplacements(molecule, logger);
+    molecules.push_back(std::make_shared<const Molecule>(std::move(molecule)));
+  }
+  made_.notes = logger.notes();
+  return molecules;
+}
+
+SceneObject StructurePictures::placedObject(std::shared_ptr<const Molecule> molecule) const {
+  SceneObject object = objectAsAsked(options_, std::move(molecule));
+  if (!options_.assembly.empty()) object.placements = placeAssembly(*object.molecule, options_.assembly);
+  if (options_.replicate != glm::ivec3(1))
+    object.placements = replicate(*object.molecule, object.placements, options_.replicate);
+  return object;
+}
+
+bool StructurePictures::draws(Representation representation) const {
+  return options_.representation == representation ||
+         std::any_of(options_.shown.begin(), options_.shown.end(),
+                     [&](const ShownApart& shown) { return shown.representation == representation; });
+}
+
+bool StructurePictures::drawsBonds() const {
+  return needsBonds(options_.representation) ||
+         std::any_of(options_.shown.begin(), options_.shown.end(),
+                     [&](const ShownApart& shown) { return needsBonds(shown.representation); });
+}
+
+// The molecule in its representation, but for the atoms that --show draws in one of their own.
+Objects StructurePictures::objectsFor(const std::shared_ptr<const Molecule>& molecule) const {
+  const SceneObject whole = placedObject(molecule);
+  if (options_.shown.empty()) return {whole};
+  std::vector<std::size_t> owner(molecule->atomCount(), 0);
+  for (std::size_t i = 0; i < options_.shown.size(); ++i) {
+    const std::vector<std::uint32_t> atoms = selectAtoms(*molecule, options_.shown[i].cid);
+    if (atoms.empty())
+      throw InputError(
+          fmt::format("'{}': --show '{}' matches none of the atoms that are drawn; see meniscus info", file_,
+                      options_.shown[i].cid));
+    for (const std::uint32_t atom : atoms) owner[atom] = i + 1;
+  }
+  Objects objects(options_.shown.size() + 1, whole);
+  for (std::size_t i = 0; i < options_.shown.size(); ++i) {
+    objects[i + 1].representation = options_.shown[i].representation;
+    if (options_.shown[i].coloring) objects[i + 1].coloring = *options_.shown[i].coloring;
+  }
+  for (std::uint32_t atom = 0; atom < owner.size(); ++atom) objects[owner[atom]].atoms.push_back(atom);
+  std::erase_if(objects, [](const SceneObject& object) { return object.atoms.empty(); });
+  return objects;
+}
+
+// One camera for all models of a file, so that they can be compared and make a film; it looks as suits the
+// first.
+Camera StructurePictures::cameraFor(const std::vector<Objects>& models) const {
+  std::vector<FitSphere> spheres, first;
+  for (const Objects& objects : models) {
+    for (const SceneObject& object : objects) {
+      if (&objects == &models.front()) {
+        const std::vector<FitSphere> some = fitSpheres(object);
+        first.insert(first.end(), some.begin(), some.end());
+      }
+      std::vector<std::uint32_t> atoms;
+      if (!options_.focus.empty()) {
+        atoms = selectAtoms(*object.molecule, options_.focus);
+        if (atoms.empty()) continue;
+      }
+      const std::vector<FitSphere> some = fitSpheres(object, atoms);
+      spheres.insert(spheres.end(), some.begin(), some.end());
+    }
+  }
+  if (spheres.empty())
+    throw InputError(
+        fmt::format("'{}': --focus '{}' matches none of the atoms that are drawn; see meniscus info", file_,
+                    options_.focus));
+
+  Camera camera;
+  camera.projection = options_.orthographic ? Projection::orthographic : Projection::perspective;
+  camera.fovY = glm::radians(options_.fovYDeg);
+  camera.zoom = options_.zoom;
+  switch (options_.orientation.kind) {
+    case Orientation::Kind::principal:
+      camera.orientation = principalAxes(first, options_.size.height > options_.size.width);
+      break;
+    case Orientation::Kind::axis:
+      camera.orientation = lookDownAxis(options_.orientation.axis);
+      break;
+    case Orientation::Kind::quaternion:
+      camera.orientation = options_.orientation.quaternion;
+      break;
+  }
+  camera.orientation = rotatedBy(camera.orientation, options_.rotationDeg);
+  return fitted(camera, options_.size, spheres);
+}
+
+}  // namespace
+
+SceneObject objectAsAsked(const RenderOptions& options, std::shared_ptr<const Molecule> molecule) {
+  SceneObject object;
+  object.placements = placeOnce(*molecule);
+  object.molecule = std::move(molecule);
+  object.representation = options.representation;
+  object.coloring = options.coloring;
+  object.radii = options.radii;
+  object.ballScale = options.ballScale.value_or(object.ballScale);
+  object.stickRadius = options.stickRadius.value_or(object.stickRadius);
+  object.licoriceRadius = options.stickRadius.value_or(object.licoriceRadius);
+  object.ellipsoidStickRadius = options.stickRadius.value_or(object.ellipsoidStickRadius);
+  object.probability = options.probability;
+  object.surface = options.surfaceShape;
+  return object;
+}
+
+// Copies are cheap to ask for, and a system short of memory ends the process without a word.
+void requireMemory(const std::string& file, double atoms, glm::dvec3 copies) {
+  constexpr double kBytesPerAtom = 100;  // measured for spheres alone, 12 million atoms; with bonds it is 190
+  const double available = static_cast<double>(physicalMemoryBytes());
+  const double needed = kBytesPerAtom * atoms * copies.x * copies.y * copies.z;
+  if (available == 0 || needed <= available) return;
+  throw InputError(
+      fmt::format("'{}': {:.0f} copies of {:.0f} atoms take {:.0f} GB of memory, more than there is; draw "
+                  "fewer copies or a part (--select)",
+                  file, copies.x * copies.y * copies.z, atoms, needed / 1e9));
+}
+
+Preparation structurePictures(const std::string& file, std::string bytes, const RenderOptions& options) {
+  return StructurePictures(file, options).make(std::move(bytes));
+}
+
+}  // namespace meniscus

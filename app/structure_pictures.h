@@ -1,0 +1,22 @@
+#pragma once
+// From a structure file and the options of the command line to pictures.
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/picture.h"
+
+namespace meniscus {
+
+/// One object as the options describe it, of all atoms, where it is placed once.
+SceneObject objectAsAsked(const RenderOptions& options, std::shared_ptr<const Molecule> molecule);
+
+/// Throws InputError naming `file` if so many copies of so many atoms do not fit into memory.
+void requireMemory(const std::string& file, double atoms, glm::dvec3 copies);
+
+/// The pictures of a file: one, or one per model. `bytes` are the file's. Throws InputError and UsageError.
+Preparation structurePictures(const std::string& file, std::string bytes, const RenderOptions& options);
+
+}  // namespace meniscus
