@@ -133,6 +133,7 @@ void RenderRun::checkBeforeReading() const {
   std::vector<std::pair<const char*, std::string>> selections{{"--select", options_.structure.select},
                                                               {"--focus", options_.focus}};
   for (const ShownApart& shown : options_.shown) selections.emplace_back("--show", shown.cid);
+  for (const auto& [cid, text] : options_.labels) selections.emplace_back("--label", cid);
   for (const auto& [option, cid] : selections) {
     try {
       if (!cid.empty()) selectAtoms(Molecule{}, cid);
@@ -226,21 +227,24 @@ void RenderRun::drawAll(const Input& input, Prepared& prepared) {
   const std::size_t frames = static_cast<std::size_t>(std::max(1, options_.turntable));
   const std::size_t count = made.pictures.size() * frames;
   std::unique_ptr<FilmFile> film;
+  const std::string filmName = made.pictures.front().output;
   if (isFilm(options_.output))
-    film = std::make_unique<FilmFile>(made.pictures.front().output, made.pictures.front().options.size,
-                                      options_.framesPerSecond);
+    film = std::make_unique<FilmFile>(filmName, made.pictures.front().options.size, options_.framesPerSecond);
   Clock::time_point start =
       Clock::now() - std::chrono::microseconds(std::llround(1000 * prepared.milliseconds));
-  drawer_.watch = [this, &start] {
+  std::string drawing;  // name of the output
+  drawer_.watch = [this, &start, &drawing] {
     const double limit = 1000 * options_.timeLimit;
     if (limit > 0 && millisecondsSince(start) > limit)
-      throw InputError(fmt::format("takes longer than the time limit of {} s", options_.timeLimit));
+      throw InputError(
+          fmt::format("'{}': takes longer than the time limit of {} s", drawing, options_.timeLimit));
   };
   for (std::size_t i = 0; i < count && !interrupted(); ++i) {
     Picture& picture = made.pictures[i / frames];
     if (frames > 1 && !picture.primitives) picture.primitives = drawer_.primitivesOf(picture);
-    Picture frame = picture;
+    Picture frame = frames > 1 ? picture : std::move(picture);  // its molecules go once they are primitives
     if (frames > 1) turn(frame, static_cast<int>(i % frames), options_, pattern_);
+    drawing = frame.output;
     if (film) {
       drawer_.drawTo(std::move(frame), *film, fmt::format("{} {}/{}", options_.output, i + 1, count));
       continue;
@@ -251,8 +255,7 @@ void RenderRun::drawAll(const Input& input, Prepared& prepared) {
   }
   if (film && !interrupted()) film->finish();
   if (film && manifest_ && !interrupted())
-    manifest_->add({input.file, made.pictures.front().output, prepared.key, 1, millisecondsSince(start),
-                    made.unsupported, ""});
+    manifest_->add({input.file, filmName, prepared.key, 1, millisecondsSince(start), made.unsupported, ""});
 }
 
 void RenderRun::drawOne(Picture picture, const Prepared& prepared, std::size_t count,
@@ -266,7 +269,7 @@ void RenderRun::drawOne(Picture picture, const Prepared& prepared, std::size_t c
     throw;
   } catch (const Error& error) {
     if (!many_) throw;
-    entry.error = fmt::format("'{}': {}", entry.output, error.what());
+    entry.error = error.what();
   } catch (const std::bad_alloc&) {
     if (!many_) throw;
     entry.error = fmt::format("'{}': not enough memory; draw fewer atoms or a smaller picture", entry.output);

@@ -23,7 +23,8 @@ void explainPictures(const RunReport& report, std::string& text) {
                    picture.input, picture.output, picture.atoms, picture.bonds, picture.spheres,
                    picture.cylinders,
                    (picture.ellipsoids > 0 ? fmt::format(", {} ellipsoids", picture.ellipsoids) : "") +
-                       (picture.metaballs > 0 ? fmt::format(", {} metaballs", picture.metaballs) : ""));
+                       (picture.metaballs > 0 ? fmt::format(", {} metaballs", picture.metaballs) : "") +
+                       (picture.triangles > 0 ? fmt::format(", {} triangles", picture.triangles) : ""));
   fmt::format_to(std::back_inserter(text), "{}x{} pixels, {} samples each, {} tile{}\n", report.size.width,
                  report.size.height, report.samples, report.render.tiles,
                  report.render.tiles == 1 ? "" : "s");

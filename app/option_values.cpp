@@ -25,11 +25,11 @@ constexpr std::array<Choice<ColorScheme>, 6> kSchemes{{
     {"rainbow", ColorScheme::rainbow},
 }};
 
-constexpr Choice<Representation> kRepresentations[] = {{"spacefill", Representation::spacefill},
-                                                       {"ball_and_stick", Representation::ballAndStick},
-                                                       {"licorice", Representation::licorice},
-                                                       {"ellipsoids", Representation::ellipsoids},
-                                                       {"surface", Representation::surface}};
+constexpr Choice<Representation> kRepresentations[] = {
+    {"spacefill", Representation::spacefill}, {"ball_and_stick", Representation::ballAndStick},
+    {"licorice", Representation::licorice},   {"ellipsoids", Representation::ellipsoids},
+    {"surface", Representation::surface},     {"cartoon", Representation::cartoon},
+    {"backbone", Representation::backbone},   {"putty", Representation::putty}};
 
 /// The whole text as a number; nothing if it is not one.
 template <typename Number>
@@ -272,6 +272,13 @@ std::pair<std::string, double> parseSurfaceOption(std::string_view option, std::
   if (!number || !std::isfinite(*number) || equals == 0)
     throwBadValue(option, value, "NAME=NUMBER, as in tolerance=0.0001");
   return {std::string(value.substr(0, equals)), *number};
+}
+
+std::pair<std::string, std::string> parseLabel(std::string_view option, std::string_view value) {
+  const std::size_t equals = value.find('=');
+  if (equals == std::string_view::npos || equals == 0 || equals + 1 == value.size())
+    throwBadValue(option, value, "CID=TEXT, as in '(HEM)=heme'");
+  return {std::string(value.substr(0, equals)), std::string(value.substr(equals + 1))};
 }
 
 ShownApart parseShown(std::string_view option, std::string_view value) {

@@ -79,6 +79,9 @@ struct ShownApart {
 /// CID=REPRESENTATION or CID=REPRESENTATION:COLOR.
 ShownApart parseShown(std::string_view option, std::string_view value);
 
+/// CID=TEXT: what to label, and how.
+std::pair<std::string, std::string> parseLabel(std::string_view option, std::string_view value);
+
 /// "first", "all" or a letter or digit.
 void parseAltloc(std::string_view option, std::string_view value, StructureOptions& options);
 

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "app/commands.h"
+#include "app/label_text.h"
 #include "core/error.h"
 #include "core/mesh/surface_mesh.h"
 #include "core/primitives.h"
@@ -108,6 +110,7 @@ void PictureDrawer::draw(Picture picture) {
   report.cylinders = drawn_.cylinders;
   report.ellipsoids = drawn_.ellipsoids;
   report.metaballs = drawn_.metaballs;
+  report.triangles = drawn_.triangles;
   report_.pictures.push_back(std::move(report));
 }
 
@@ -146,9 +149,12 @@ void PictureDrawer::render(Picture& picture, RowSink& sink, const PixelLayout& l
   drawn_.spheres = primitives->spheres.size();
   drawn_.cylinders = primitives->cylinders.size();
   drawn_.ellipsoids = primitives->ellipsoids.size();
+  drawn_.triangles = primitives->mesh.triangles.size();
   for (const MetaballField& field : primitives->surfaces) drawn_.metaballs += field.balls.size();
 
   const View view = makeView(scene.camera, options.size, primitives->bounds());
+  std::vector<LabelSprite> labels = drawLabels(
+      scene.labels, std::max(0.01 * options.labelSize * options.size.height, 1.0), options.labelFont);
   progress_.start(label);
   Renderer& draw = renderer();
   if (primitives != shown_) {
@@ -156,6 +162,7 @@ void PictureDrawer::render(Picture& picture, RowSink& sink, const PixelLayout& l
     draw.setPrimitives(primitives);
     shown_ = std::move(primitives);
   }
+  draw.setLabels(std::move(labels), options.labelColors);
   draw.renderPicture(view, lightFor(options), scene.background, settingsFor(options), layout, sink,
                      [this](double share) {
                        if (watch) watch();

@@ -126,12 +126,29 @@ std::string surfaceMethodHelp() {
   return help;
 }
 
+void addLabelOptions(CLI::App& app, RenderOptions& o) {
+  OptionGroup group(app, "Labels");
+  group.values("--label", "CID=TEXT",
+               "Write a text at the middle of these atoms (as --select);\n"
+               "may be repeated",
+               [&o](auto& n, auto& v) { o.labels.push_back(parseLabel(n, v)); });
+  group.value("--label-size", "P", "Height of letters, percent of the picture's height [4]",
+              [&o](auto& n, auto& v) { o.labelSize = parseNumber(n, v, 0.1, 100, "percent"); });
+  group.value("--label-color,--label-colour", "COLOR", "black, white or '#RRGGBB' [black]",
+              [&o](auto& n, auto& v) { o.labelColors.text = parseColor(n, v); });
+  group.value("--label-seam", "COLOR", "Colour of the seam around letters [white]",
+              [&o](auto& n, auto& v) { o.labelColors.seam = parseColor(n, v); });
+  group.value("--label-font", "FILE", "A font that FreeType reads [DejaVu Sans]",
+              [&o](auto&, auto& v) { o.labelFont = v; });
+}
+
 void addLookOptions(CLI::App& app, RenderOptions& o) {
   OptionGroup group(app, "Look");
   group.value("--representation", "NAME",
               "spacefill (van der Waals spheres), ball_and_stick, licorice,\n"
-              "ellipsoids (atomic displacements, as ORTEP draws them) or\n"
-              "surface (a smooth skin over all atoms)\n"
+              "ellipsoids (atomic displacements, as ORTEP draws them),\n"
+              "surface (a smooth skin over all atoms), cartoon, backbone or\n"
+              "putty (tubes, thick where the B factor is large)\n"
               "[spacefill: it shows any molecule, of any size]",
               [&o](auto& n, auto& v) { o.representation = parseRepresentation(n, v); });
   group.values("--show", "CID=NAME[:SCHEME]",
@@ -161,6 +178,8 @@ void addLookOptions(CLI::App& app, RenderOptions& o) {
               [&o](auto& n, auto& v) { o.ballScale = parseNumber(n, v, 0.01, 10); });
   group.value("--stick-radius", "R", "Radius of sticks in Angstrom [0.15; licorice 0.25;\nellipsoids 0.06]",
               [&o](auto& n, auto& v) { o.stickRadius = parseNumber(n, v, 0.001, 100, "Angstrom"); });
+  group.value("--ribbon-scale", "F", "Widths of cartoons, backbones and putty [1]",
+              [&o](auto& n, auto& v) { o.ribbonScale = parseNumber(n, v, 0.01, 100); });
   group.value("--probability", "P",
               "How likely an atom is inside its displacement ellipsoid,\nbetween 0 and 1 [0.5]",
               [&o](auto& n, auto& v) { o.probability = parseProbability(n, v); });
@@ -477,6 +496,7 @@ void addAllOptions(CLI::App& app, RenderOptions& options) {
   addOutputOptions(app, options);
   addLookOptions(app, options);
   addSurfaceOptions(app, options);
+  addLabelOptions(app, options);
   addStyleOption(app);
   addLightOptions(app, options);
   addLineOptions(app, options);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/option_values.h"
+#include "core/label_sprite.h"
 #include "core/render_settings.h"
 #include "core/scene.h"
 #include "io/structure_reader.h"
@@ -29,12 +30,18 @@ struct RenderOptions {
   Coloring coloring;
   RadiusSet radii = RadiusSet::bondi;
   std::optional<double> ballScale, stickRadius;  ///< nothing = the representation's own
+  double ribbonScale = 1;                        ///< of cartoons, backbones and putty
   double probability = 0.5;                      ///< of displacement ellipsoids, see SceneObject
   SurfaceShape surfaceShape;
   SurfaceSettings surface;
   std::string exportMesh;             ///< pattern of names; empty = no mesh is written
   std::optional<double> meshSpacing;  ///< [Å] nothing = the method's default
   std::vector<ShownApart> shown;      ///< drawn in another way; of several that name an atom the last has it
+
+  std::vector<std::pair<std::string, std::string>> labels;  ///< CID and text
+  double labelSize = 4;  ///< height of letters, percent of the picture's height
+  LabelColors labelColors;
+  std::filesystem::path labelFont;  ///< empty = DejaVu Sans
 
   Orientation orientation;
   glm::dvec3 rotationDeg{0.0};

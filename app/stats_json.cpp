@@ -64,7 +64,8 @@ std::string statsAsJson(const RunReport& report) {
                                 {"spheres", picture.spheres},
                                 {"cylinders", picture.cylinders},
                                 {"ellipsoids", picture.ellipsoids},
-                                {"metaballs", picture.metaballs}});
+                                {"metaballs", picture.metaballs},
+                                {"triangles", picture.triangles}});
   json["failures"] = report.failures;
   json["seconds"] = secondsOf(report);
   json["cpuSeconds"] = report.cpuSeconds;

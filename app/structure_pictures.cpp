@@ -12,6 +12,7 @@
 #include "app/film.h"
 #include "app/output_name.h"
 #include "app/run_report.h"
+#include "app/scene/mvs_camera.h"
 #include "core/bonds.h"
 #include "core/camera_fit.h"
 #include "core/displacement.h"
@@ -37,6 +38,7 @@ class StructurePictures {
   SceneObject placedObject(std::shared_ptr<const Molecule> molecule) const;
   Objects objectsFor(const std::shared_ptr<const Molecule>& molecule) const;
   Camera cameraFor(const std::vector<Objects>& models) const;
+  void addLabels(const SceneObject& object, std::vector<Label>& labels) const;
   void addPicture(Scene scene, int model);
 
   const std::string& file_;
@@ -57,6 +59,7 @@ Preparation StructurePictures::make(std::string bytes) {
 
   const OutputPattern pattern(options_.output.empty() ? options_.exportMesh : options_.output);
   if (!pattern.namesModel() && !isFilm(options_.output)) {
+    for (const Objects& objects : models) addLabels(objects.front(), scene.labels);
     for (Objects& objects : models)
       std::move(objects.begin(), objects.end(), std::back_inserter(scene.objects));
     addPicture(std::move(scene), molecules.front()->model);
@@ -71,6 +74,8 @@ Preparation StructurePictures::make(std::string bytes) {
                     file_));
   for (Objects& objects : models) {
     const int model = objects.front().molecule->model;
+    scene.labels.clear();
+    addLabels(objects.front(), scene.labels);
     scene.objects = std::move(objects);
     addPicture(scene, model);
   }
@@ -156,6 +161,16 @@ Objects StructurePictures::objectsFor(const std::shared_ptr<const Molecule>& mol
   return objects;
 }
 
+void StructurePictures::addLabels(const SceneObject& object, std::vector<Label>& labels) const {
+  for (const auto& [cid, text] : options_.labels) {
+    const std::vector<std::uint32_t> atoms = selectAtoms(*object.molecule, cid);
+    if (atoms.empty())
+      throw InputError(fmt::format(
+          "'{}': --label '{}' matches none of the atoms that are drawn; see meniscus info", file_, cid));
+    labels.push_back(labelOf(object.molecule, object.placements, atoms, text));
+  }
+}
+
 // One camera for all models of a file, so that they can be compared and make a film; it looks as suits the
 // first.
 Camera StructurePictures::cameraFor(const std::vector<Objects>& models) const {
@@ -212,9 +227,20 @@ SceneObject objectAsAsked(const RenderOptions& options, std::shared_ptr<const Mo
   object.stickRadius = options.stickRadius.value_or(object.stickRadius);
   object.licoriceRadius = options.stickRadius.value_or(object.licoriceRadius);
   object.ellipsoidStickRadius = options.stickRadius.value_or(object.ellipsoidStickRadius);
+  object.ribbonScale = options.ribbonScale;
   object.probability = options.probability;
   object.surface = options.surfaceShape;
   return object;
+}
+
+Label labelOf(std::shared_ptr<const Molecule> molecule, const std::vector<Placement>& placements,
+              std::vector<std::uint32_t> atoms, const std::string& text) {
+  SceneObject labelled;
+  labelled.molecule = std::move(molecule);
+  labelled.placements = placements;
+  labelled.atoms = std::move(atoms);
+  const BoundingSphere bounds = boundsOf(fitSpheres(labelled));
+  return {text, bounds.center, bounds.radius};
 }
 
 // Copies are cheap to ask for, and a system short of memory ends the process without a word.

@@ -13,6 +13,10 @@ namespace meniscus {
 /// One object as the options describe it, of all atoms, where it is placed once.
 SceneObject objectAsAsked(const RenderOptions& options, std::shared_ptr<const Molecule> molecule);
 
+/// A label at the middle of these atoms, in all placements together.
+Label labelOf(std::shared_ptr<const Molecule> molecule, const std::vector<Placement>& placements,
+              std::vector<std::uint32_t> atoms, const std::string& text);
+
 /// Throws InputError naming `file` if so many copies of so many atoms do not fit into memory.
 void requireMemory(const std::string& file, double atoms, glm::dvec3 copies);
 

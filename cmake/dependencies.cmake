@@ -8,6 +8,7 @@ find_package(CLI11 REQUIRED)      # libcli11-dev
 # libzip-dev: scene archives; its own CMake file wants the package of its tools, too.
 find_path(LIBZIP_INCLUDE_DIR zip.h REQUIRED)
 find_library(LIBZIP_LIBRARY zip REQUIRED)
+find_package(Freetype REQUIRED)   # libfreetype-dev: labels
 find_package(CURL REQUIRED)       # libcurl4-openssl-dev: what scenes refer to on the web
 find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)  # libxxhash-dev: names of contents; used as a header
 find_package(TBB REQUIRED)        # libtbb-dev: core/tiles on all processors

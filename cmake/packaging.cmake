@@ -23,5 +23,5 @@ Draws proteins, nucleic acids and small molecules from PDB and mmCIF files as
 spheres, balls and sticks, or metaball surfaces, on a GPU or without one.")
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)  # the linked libraries; below, those that are opened at run time:
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "libegl1, libgl1-mesa-dri")
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libosmesa6")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libosmesa6, fonts-dejavu-core")
 include(CPack)

@@ -234,7 +234,8 @@ std::vector<glm::dvec3> occlusionDirections(int count) {
 
 OcclusionMaps drawOcclusionMaps(const Primitives& primitives, const View& camera,
                                 const OcclusionSettings& settings) {
-  const std::vector<SpherePrimitive> cores = coresOf(primitives.surfaces);
+  std::vector<SpherePrimitive> cores = coresOf(primitives.surfaces);
+  cores.insert(cores.end(), primitives.filling.begin(), primitives.filling.end());
   OcclusionMaps all = layOut(primitives, cores, camera, settings);
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {

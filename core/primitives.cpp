@@ -7,6 +7,7 @@
 #include "core/atom_colors.h"
 #include "core/displacement.h"
 #include "core/error.h"
+#include "core/ribbon_primitives.h"
 
 namespace meniscus {
 
@@ -49,7 +50,7 @@ float drawnRadius(const SceneObject& object, const Ellipsoids& ellipsoids, std::
       return static_cast<float>(object.licoriceRadius);
     case Representation::ellipsoids:
       return ellipsoids.longest(atom);
-    case Representation::surface:
+    default:
       break;
   }
   return vdw;
@@ -191,7 +192,8 @@ std::size_t countIds(const Scene& scene) {
 }
 
 bool needsBonds(Representation representation) {
-  return representation != Representation::spacefill && representation != Representation::surface;
+  return representation != Representation::spacefill && representation != Representation::surface &&
+         !followsBackbone(representation);
 }
 
 Primitives buildPrimitives(const Scene& scene, LineGroups groups) {
@@ -201,7 +203,7 @@ Primitives buildPrimitives(const Scene& scene, LineGroups groups) {
   for (const SceneObject& object : scene.objects) {
     for (const Placement& placement : object.placements) {
       if (object.representation != Representation::ellipsoids &&
-          object.representation != Representation::surface)
+          object.representation != Representation::surface && !followsBackbone(object.representation))
         forEachAtom(object, placement, [&](std::uint32_t) { ++spheres; });
     }
   }
@@ -220,13 +222,18 @@ Primitives buildPrimitives(const Scene& scene, LineGroups groups) {
     const std::vector<Rgb> colors =
         object.colors.empty() ? colorAtoms(*object.molecule, object.coloring) : object.colors;
     const Ellipsoids ellipsoids(object);
+    const BackboneObject backbone(object);
     const auto atoms = static_cast<std::uint32_t>(object.molecule->atomCount());
     const bool shared = sharesIds(scene, i);
     if (!shared) firstId = nextId;
     if (object.representation == Representation::surface) out.surfaces.push_back(emptyField(object.surface));
     std::uint32_t id = firstId;
     for (const Placement& placement : object.placements) {
-      addPlacement(object, placement, colors, ellipsoids, scratch, id, out);
+      if (followsBackbone(object.representation)) {
+        backbone.addPlacement(placement, colors, id, out);
+      } else {
+        addPlacement(object, placement, colors, ellipsoids, scratch, id, out);
+      }
       if (grouped && !shared) addGroups(*object.molecule, groups, nextGroup, out.groups);
       id += atoms;
     }
@@ -249,6 +256,7 @@ BoundingSphere Primitives::bounds() const {
     grow(c.b, c.radius);
   }
   for (const EllipsoidPrimitive& e : ellipsoids) grow(e.center, glm::length(e.axisA));
+  for (const TriangleVertex& v : mesh.vertices) grow(v.position, 0);
   for (const MetaballField& field : surfaces)
     for (const Metaball& b : field.balls) grow(b.center, b.support);
   const glm::vec3 middle = (low + high) * 0.5f;
@@ -263,6 +271,8 @@ BoundingSphere Primitives::bounds() const {
   for (const EllipsoidPrimitive& e : ellipsoids) {
     radius = std::max(radius, static_cast<double>(glm::length(e.center - middle) + glm::length(e.axisA)));
   }
+  for (const TriangleVertex& v : mesh.vertices)
+    radius = std::max(radius, static_cast<double>(glm::length(v.position - middle)));
   for (const MetaballField& field : surfaces) {
     for (const Metaball& b : field.balls)
       radius = std::max(radius, static_cast<double>(glm::length(b.center - middle) + b.support));
@@ -273,6 +283,8 @@ BoundingSphere Primitives::bounds() const {
 std::vector<FitSphere> fitSpheres(const SceneObject& object, const std::vector<std::uint32_t>& atoms) {
   std::vector<FitSphere> out;
   const Ellipsoids ellipsoids(object);
+  const BackboneObject backbone(object);
+  const bool ribbons = followsBackbone(object.representation);
   std::vector<bool> chosen;
   if (!atoms.empty()) {
     chosen.resize(object.molecule->atomCount());
@@ -281,8 +293,8 @@ std::vector<FitSphere> fitSpheres(const SceneObject& object, const std::vector<s
   for (const Placement& placement : object.placements) {
     forEachAtom(object, placement, [&](std::uint32_t atom) {
       if (!chosen.empty() && !chosen[atom]) return;
-      out.push_back(
-          {placed(placement, object.molecule->positions[atom]), fitRadius(object, ellipsoids, atom)});
+      const double radius = ribbons ? backbone.reach(atom) : fitRadius(object, ellipsoids, atom);
+      if (radius >= 0) out.push_back({placed(placement, object.molecule->positions[atom]), radius});
     });
   }
   return out;

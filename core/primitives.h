@@ -10,6 +10,7 @@
 #include "core/metaball_field.h"
 #include "core/render_settings.h"
 #include "core/scene.h"
+#include "core/triangle_mesh.h"
 #include "core/view.h"
 
 namespace meniscus {
@@ -45,11 +46,13 @@ struct Primitives {
   std::vector<SpherePrimitive> spheres;
   std::vector<CylinderPrimitive> cylinders;
   std::vector<EllipsoidPrimitive> ellipsoids;
-  std::vector<MetaballField> surfaces;  ///< one per object drawn so, none of them empty
-  std::vector<std::uint32_t> groups;    ///< by id; [0] = 0 and nobody else's; empty = not asked for
+  std::vector<MetaballField> surfaces;   ///< one per object drawn so, none of them empty
+  TriangleMesh mesh;                     ///< of all ribbons
+  std::vector<SpherePrimitive> filling;  ///< balls within the mesh, which stand for it in ambient occlusion
+  std::vector<std::uint32_t> groups;     ///< by id; [0] = 0 and nobody else's; empty = not asked for
 
   bool empty() const {
-    return spheres.empty() && cylinders.empty() && ellipsoids.empty() && surfaces.empty();
+    return spheres.empty() && cylinders.empty() && ellipsoids.empty() && surfaces.empty() && mesh.empty();
   }
   bool onlySurfaces() const { return spheres.empty() && cylinders.empty() && ellipsoids.empty(); }
   BoundingSphere bounds() const;  ///< world space

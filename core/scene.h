@@ -24,7 +24,10 @@ enum class Representation : std::uint8_t {
   ballAndStick,  ///< small spheres and thin cylinders
   licorice,      ///< cylinders with rounded ends
   ellipsoids,    ///< displacement ellipsoids and thin cylinders (ORTEP)
-  surface        ///< molecular surface: the metaball field of all atoms
+  surface,       ///< molecular surface: the metaball field of all atoms
+  cartoon,       ///< ribbons along the backbones of proteins and nucleic acids
+  backbone,      ///< sticks from one residue to the next
+  putty          ///< tubes along the backbones, thick where the B factor is large
 };
 
 enum class ColorScheme : std::uint8_t { element, chain, residue, bFactor, plddt, rainbow, uniform };
@@ -56,6 +59,7 @@ struct SceneObject {
   double stickRadius = 0.15;     ///< cylinder radius [Å], ball and stick
   double licoriceRadius = 0.25;  ///< cylinder and sphere radius [Å], licorice
   double ellipsoidStickRadius = 0.06;  ///< cylinder radius [Å], ellipsoids
+  double ribbonScale = 1;              ///< of all widths of cartoon, backbone and putty
   double probability = 0.5;            ///< that an atom is inside its ellipsoid, 0 < p < 1
   SurfaceShape surface;
 };

@@ -30,6 +30,9 @@ void requireFinite(const Primitives& primitives) {
   for (const EllipsoidPrimitive& e : primitives.ellipsoids)
     require(zeroIfFinite(e.center) + zeroIfFinite(e.axisA) + zeroIfFinite(e.axisB) + e.shortest * 0.0f,
             "ellipsoid", e.id);
+  for (const TriangleVertex& v : primitives.mesh.vertices)
+    if (zeroIfFinite(v.position) + zeroIfFinite(v.normal) != 0.0f)
+      throw InputError("a ribbon has a number that is not finite");
 }
 
 }  // namespace meniscus

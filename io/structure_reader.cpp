@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "io/binary_cif.h"
 #include "io/file_bytes.h"
 #include "io/format_readers.h"
 #include "io/keep_atoms.h"
@@ -102,9 +103,11 @@ void applyOptions(Molecule& m, const StructureOptions& options) {
 
 ReadModels readModels(std::string bytes, const std::filesystem::path& path, const StructureOptions& options,
                       Oddities& oddities) {
-  std::string text = textOf(std::move(bytes), path);
+  const bool binary = isBinaryCif(bytes);
+  std::string text = binary ? std::string() : textOf(std::move(bytes), path);
   const ModelChoice choice{options.model, options.allModels, options.modelIndex};
   try {
+    if (binary) text = textFromBinaryCif(bytes);
     mendLineEnds(text, oddities);
     const StructureKind kind = detectKind(text, extensionOf(path));
     return kind == StructureKind::pdb ? readPdb(text, choice, oddities) : readMmcif(text, choice, oddities);

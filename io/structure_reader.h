@@ -1,6 +1,6 @@
 #pragma once
-// PDB and mmCIF files, plain or gzipped, of every era and habit, as Molecules (through gemmi, which does
-// not leave this folder).
+// PDB and mmCIF files, plain or gzipped, and BinaryCIF, of every era and habit, as Molecules (through gemmi,
+// which does not leave this folder).
 
 #include <cstdint>
 #include <filesystem>

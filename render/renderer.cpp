@@ -16,6 +16,7 @@
 #include "render/gbuffer.h"
 #include "render/layers.h"
 #include "render/post/depth_unsharp.h"
+#include "render/post/labels.h"
 #include "render/post/occlusion.h"
 #include "render/post/resolve.h"
 #include "render/post/shade.h"
@@ -25,6 +26,7 @@
 #include "render/quadrics.h"
 #include "render/surface_passes.h"
 #include "render/tile_quadrics.h"
+#include "render/triangles.h"
 #include "render/view_block.h"
 
 namespace meniscus {
@@ -131,12 +133,16 @@ struct Renderer::Impl {
   QuadricBuffers quadrics;
   TileQuadrics tileQuadrics;
   QuadricChoice quadricChoice;
+  TriangleBuffers triangles;
   SurfacePasses surfaces;
   ShadeUniforms shadeUniforms;
   ShadowUniforms shadowUniforms;
   OcclusionBuffers occlusionBuffers;
   SilhouetteUniforms silhouetteUniforms;
   DepthUnsharpUniforms unsharpUniforms;
+  std::vector<LabelSprite> labels;
+  LabelColors labelColors;
+  LabelBuffers labelBuffers;
   gl::Buffer viewUniforms;
   std::shared_ptr<const Primitives> primitives = std::make_shared<Primitives>();
   RenderStats stats;
@@ -154,6 +160,7 @@ struct Renderer::Impl {
     Stopwatch watch(stats.uploadMs);
     quadricChoice = chooseQuadrics(method);
     if (!quadricChoice.tiles) quadrics.upload(*primitives);
+    triangles.upload(primitives->mesh);
     surfaces.prepare(primitives, surface);
     if (!viewUniforms.object) viewUniforms = gl::Buffer::updatable(sizeof(f32::ViewBlock));
   }
@@ -174,6 +181,7 @@ struct Renderer::Impl {
       addQuadrics(graph, quadrics, shaders, gbuffer, prefix);
     }
     leaveOutOtherQuadrics(graph, prefix);
+    addTriangles(graph, triangles, shaders, gbuffer, prefix);
     if (drawn == Surfaces::opaque)
       surfaces.add(graph, shaders, {view, primitives->origin, tile, sampleShift, gbuffer, prefix});
   }
@@ -220,10 +228,17 @@ struct Renderer::Impl {
     } else {
       graph.leaveOut("pass silhouette", "outlines are off");
     }
+    TextureRef over;  // labels
+    if (!labelBuffers.empty()) {
+      over = addLabels(graph, labelBuffers, shaders, gbuffer, tile);
+    } else {
+      graph.leaveOut("pass labels", "there are none in the picture");
+    }
     if (frame.translucent) {
-      addShadeUnderLayers(graph, frame, tile, sampleShift, gbuffer, light, target);
+      addShadeUnderLayers(graph, frame, tile, sampleShift, gbuffer, light, over, target);
     } else {
       graph.leaveOut("pass translucent", "no surface is translucent");
+      light.labels = over;
       addShade(graph, frame.shade, shadeUniforms, shaders, gbuffer, light, target);
     }
     graph.want(target);
@@ -232,7 +247,8 @@ struct Renderer::Impl {
 
   // What is opaque, and the layers of translucent surfaces over it.
   void addShadeUnderLayers(FrameGraph& graph, const Frame& frame, const Tile& tile, glm::vec2 sampleShift,
-                           const GBufferRefs& gbuffer, const LightRefs& light, TextureRef target) {
+                           const GBufferRefs& gbuffer, const LightRefs& light, TextureRef over,
+                           TextureRef target) {
     graph.leaveOut("methods but lists", "a surface is translucent, and only lists draws layers");
     ShadeSettings opaque = frame.shade;
     opaque.final = false;
@@ -240,7 +256,7 @@ struct Renderer::Impl {
     addShade(graph, opaque, shadeUniforms, shaders, gbuffer, light, below);
     const SurfaceLayerRefs layers =
         surfaces.addLayers(graph, shaders, {frame.view, primitives->origin, tile, sampleShift, gbuffer, {}});
-    addTranslucent(graph, frame.shade, shadeUniforms, shaders, layers, below, target);
+    addTranslucent(graph, frame.shade, shadeUniforms, shaders, layers, below, over, target);
   }
 
   void drawShadowMap(Frame& frame);
@@ -261,10 +277,16 @@ void Renderer::setPrimitives(std::shared_ptr<const Primitives> primitives) {
   impl_->surfaces.takeStats(impl_->stats.surfaces);
   impl_->surfaces.clear();
   impl_->quadrics.clear();
+  impl_->triangles.clear();
   impl_->tileQuadrics.setPrimitives(impl_->primitives);
   impl_->occlusionBuffers.clear();
   impl_->silhouetteUniforms.clearGroups();
   impl_->pool.trim();
+}
+
+void Renderer::setLabels(std::vector<LabelSprite> labels, const LabelColors& colors) {
+  impl_->labels = std::move(labels);
+  impl_->labelColors = colors;
 }
 
 // The same primitives as seen from the key light, with only their depth wanted.
@@ -300,6 +322,7 @@ void Renderer::Impl::setEffects(Frame& frame) {
     silhouetteUniforms.set(settings.lines, frame.view);
     silhouetteUniforms.setGroups(primitives->groups);
   }
+  labelBuffers.set(labels, labelColors, frame.view);
   frame.unsharp = unsharpKernel(unsharpSigma(settings.depthUnsharp, frame.view));
   frame.margin = std::max({reachOf(settings.lines), reachOf(settings.depthUnsharp, frame.view),
                            reachOf(settings.occlusion, settings.samples)});
@@ -551,6 +574,7 @@ RenderStats Renderer::stats() const {
   stats.programs = impl_->shaders.compiled();
   stats.compileMs = impl_->shaders.compileMs();
   stats.buffers = impl_->quadrics.buffers();
+  for (ResourceStats& buffer : impl_->triangles.buffers()) stats.buffers.push_back(std::move(buffer));
   for (ResourceStats& buffer : impl_->surfaces.buffers()) stats.buffers.push_back(std::move(buffer));
   const gl::Buffer& groups = impl_->silhouetteUniforms.groups();
   if (groups.object) stats.buffers.push_back({"groups", groups.bytes});

@@ -10,6 +10,7 @@
 
 #include "core/hit_image.h"
 #include "core/image.h"
+#include "core/label_sprite.h"
 #include "core/primitives.h"
 #include "core/render_settings.h"
 #include "core/scene.h"
@@ -44,6 +45,9 @@ class Renderer {
   /// What to draw from now on. Uploads only when a frame needs it. Throws InputError if a number is not
   /// finite.
   void setPrimitives(std::shared_ptr<const Primitives> primitives);
+
+  /// Labels of the pictures from now on.
+  void setLabels(std::vector<LabelSprite> labels, const LabelColors& colors);
 
   /// Draws a picture of view.size and hands its rows to `sink` from the top. What `layout` leaves out is not
   /// computed. `progress` gets the finished share 0..1.

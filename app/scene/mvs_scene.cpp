@@ -292,8 +292,8 @@ void StateReader::readComponent(const MvsNode& node, ReadStructure& structure,
       camera_.readFocus(child, spheres, made_.unsupported);
     } else if (child.kind() == "label") {
       child.listOtherParameters({"text"}, made_.unsupported);
-      const BoundingSphere bounds = boundsOf(spheres);
-      picture_.scene.labels.push_back({child.at("text").string(), bounds.center, bounds.radius});
+      picture_.scene.labels.push_back(
+          labelOf(structure.molecule, placements, atoms, child.at("text").string()));
     } else if (child.kind() == "tooltip") {
       leaveOut(child, "tooltips have no meaning in a picture");
     } else if (child.kind() != "transform" && child.kind() != "instance") {
@@ -321,6 +321,11 @@ void StateReader::setLook(const MvsNode& node, SceneObject& object) {
   } else if (name == "line") {
     object.representation = Representation::licorice;
     object.licoriceRadius = kLineRadius * size;
+  } else if (name == "cartoon" || name == "backbone" || name == "putty") {
+    object.representation = name == "cartoon"    ? Representation::cartoon
+                            : name == "backbone" ? Representation::backbone
+                                                 : Representation::putty;
+    object.ribbonScale = size;
   } else if (name == "surface") {
     object.representation = Representation::surface;
     object.radiusScale = size;
@@ -340,12 +345,10 @@ void StateReader::setLook(const MvsNode& node, SceneObject& object) {
 void StateReader::readRepresentation(const MvsNode& node, const MvsNode& component, ReadStructure& structure,
                                      const std::vector<Placement>& placements,
                                      std::vector<std::uint32_t> atoms) {
-  static constexpr std::array<std::string_view, 4> kNotYet{"cartoon", "backbone", "putty", "carbohydrate"};
   const std::optional<JsonPlace> meniscus = node.meniscus();
   const auto custom = [&](std::string_view key) { return meniscus ? meniscus->find(key) : std::nullopt; };
-  const std::string& type = node.at("type").string();
-  if (!custom("representation") && std::find(kNotYet.begin(), kNotYet.end(), type) != kNotYet.end()) {
-    leaveOut(node, fmt::format("the representation '{}' is not supported", type));
+  if (!custom("representation") && node.at("type").string() == "carbohydrate") {
+    leaveOut(node, "the representation 'carbohydrate' is not supported");
     return;
   }
   node.listOtherParameters({"type", "size_factor", "ignore_hydrogens", "surface_type"}, made_.unsupported);

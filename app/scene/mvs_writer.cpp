@@ -56,6 +56,12 @@ const char* typeOf(Representation representation) {
       return "spacefill";
     case Representation::surface:
       return "surface";
+    case Representation::cartoon:
+      return "cartoon";
+    case Representation::backbone:
+      return "backbone";
+    case Representation::putty:
+      return "putty";
     default:
       return "ball_and_stick";
   }
@@ -91,6 +97,11 @@ Json componentNodes(const Picture& picture) {
     if (!except.empty()) custom["except"] = except;
     add(std::move(custom),
         representationNode(shown.representation, shown.coloring.value_or(o.coloring), o.given));
+  }
+  for (const auto& [cid, text] : o.labels) {
+    Json component = node("component", {{"selector", "all"}}, {{"select", cid}});
+    component["children"] = {node("label", {{"text", text}})};
+    components.push_back(std::move(component));
   }
   return components;
 }

@@ -83,6 +83,7 @@ void addShade(FrameGraph& graph, const ShadeSettings& settings, const ShadeUnifo
   if (light.occlusion.valid()) reads.push_back(light.occlusion);
   if (light.difference.valid()) reads.push_back(light.difference);
   if (light.lines.valid()) reads.push_back(light.lines);
+  if (light.labels.valid()) reads.push_back(light.labels);
   const bool fog = settings.fog.strength > 0;
   if (fog) reads.push_back(gbuffer.depth);
   graph.addPass("shade", reads, {{target, 0}},
@@ -109,6 +110,10 @@ void addShade(FrameGraph& graph, const ShadeSettings& settings, const ShadeUnifo
                   if (light.lines.valid()) {
                     flags.insert("LINES");
                     glBindTextureUnit(6, context.texture(light.lines).object.name());
+                  }
+                  if (light.labels.valid()) {
+                    flags.insert("LABELS");
+                    glBindTextureUnit(7, context.texture(light.labels).object.name());
                   }
                   glBindTextureUnit(0, context.texture(gbuffer.albedo).object.name());
                   glBindTextureUnit(1, context.texture(gbuffer.normal).object.name());

@@ -38,6 +38,7 @@ struct LightRefs {
   TextureRef visibility;  ///< share of the key light that arrives (shadow.h)
   TextureRef occlusion;   ///< what is hidden of the sky, and the sky (occlusion.h)
   TextureRef difference;  ///< in depth from the surroundings (depth_unsharp.h)
+  TextureRef labels;      ///< over everything, and how much they cover (labels.h)
   TextureRef lines;       ///< share of the pixel that is line (silhouette.h)
 };
 

@@ -1,5 +1,5 @@
 #version 450 core
-// flags: FINAL ENCODE_SRGB SHADOW OCCLUSION UNSHARP FOG LINES
+// flags: FINAL ENCODE_SRGB SHADOW OCCLUSION UNSHARP FOG LINES LABELS
 // Deferred shading. One sample is written as the picture (FINAL); of several, each is added to the sum that
 // post/resolve.frag divides.
 #include "include/view.glsl"
@@ -26,6 +26,9 @@ layout(binding = 5) uniform sampler2D tDepth;
 #endif
 #ifdef LINES
 layout(binding = 6) uniform sampler2D tLines;  // share of the pixel that is line
+#endif
+#ifdef LABELS
+layout(binding = 7) uniform sampler2D tLabels;  // premultiplied, over everything
 #endif
 
 layout(location = 0) out vec4 oColor;
@@ -61,6 +64,10 @@ void main() {
     light.rgb = mix(light.rgb, uLine.rgb * light.a, uLine.a * texelFetch(tLines, at, 0).r);
 #endif
   }
+#ifdef LABELS
+  vec4 label = texelFetch(tLabels, at, 0);
+  light = label + (1.0 - label.a) * light;
+#endif
 #ifdef FINAL
   oColor = pictureValue(light, uBackdrop);
 #else

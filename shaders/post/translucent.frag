@@ -1,5 +1,5 @@
 #version 450 core
-// flags: FINAL ENCODE_SRGB FOG
+// flags: FINAL ENCODE_SRGB FOG LABELS
 // Lays the layers of translucent surfaces (include/lists_layers.glsl) over what is opaque: the merged rest,
 // then the four nearest, back to front. Each lets through what it does not cover.
 #include "include/view.glsl"
@@ -14,6 +14,10 @@ layout(binding = 2) uniform usampler2D tLayer1;
 layout(binding = 3) uniform usampler2D tLayer2;
 layout(binding = 4) uniform usampler2D tLayer3;
 layout(binding = 5) uniform usampler2D tRest;
+
+#ifdef LABELS
+layout(binding = 6) uniform sampler2D tLabels;  // premultiplied, over everything
+#endif
 
 layout(location = 0) out vec4 oColor;
 
@@ -54,6 +58,10 @@ void main() {
     }
     light = layOver(light, nearest, 1.0, toEye);
   }
+#ifdef LABELS
+  vec4 label = texelFetch(tLabels, at, 0);
+  light = label + (1.0 - label.a) * light;
+#endif
 #ifdef FINAL
   oColor = pictureValue(light, uBackdrop);
 #else

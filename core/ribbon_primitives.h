@@ -1,0 +1,39 @@
+#pragma once
+// Objects that are drawn by their backbones: cartoon, putty and backbone.
+
+#include <vector>
+
+#include "core/backbone.h"
+#include "core/primitives.h"
+#include "core/ribbon.h"
+
+namespace meniscus {
+
+/// Whether a representation is drawn from backbones, not atom by atom.
+bool followsBackbone(Representation representation);
+
+class BackboneObject {
+ public:
+  /// Nothing if the representation does not follow the backbone. `object` must outlive it.
+  explicit BackboneObject(const SceneObject& object);
+
+  /// Adds one placement; `colors` by atom, `firstId` the id of the molecule's first atom.
+  void addPlacement(const Placement& placement, const std::vector<Rgb>& colors, std::uint32_t firstId,
+                    Primitives& out) const;
+  /// Radius about a trace atom that holds what is drawn there [Å]; negative for all other atoms.
+  double reach(std::uint32_t atom) const { return reach_[atom]; }
+
+ private:
+  void addRibbon(const Placement& placement, const std::vector<bool>& placed, const std::vector<Rgb>& colors,
+                 std::uint32_t firstId, Primitives& out) const;
+  void addTrace(const Placement& placement, const std::vector<bool>& placed, const std::vector<Rgb>& colors,
+                std::uint32_t firstId, Primitives& out) const;
+
+  const SceneObject& object_;
+  std::vector<bool> chosen_;  // by atom; empty = all
+  std::vector<double> reach_;
+  std::vector<Backbone> backbones_;
+  Ribbon ribbon_;
+};
+
+}  // namespace meniscus

@@ -1,0 +1,148 @@
+// Ribbons are closed surfaces with the normals of what they stand for.
+
+#include "core/ribbon.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <glm/geometric.hpp>
+#include <map>
+#include <tuple>
+
+#include "core/primitives.h"
+#include "io/structure_reader.h"
+
+namespace meniscus::test {
+namespace {
+
+Molecule readMolecule(const std::string& name) {
+  Logger logger;
+  return readStructure(std::string(MENISCUS_MOLECULES) + "/" + name, {}, logger).models.at(0);
+}
+
+/// Every edge, by the places of its ends, is met as often in one direction as in the other: no crack
+/// anywhere.
+void expectClosed(const Ribbon& ribbon) {
+  using Point = std::tuple<double, double, double>;
+  std::map<Point, int> pointIndex;
+  std::map<std::pair<int, int>, int> edges;
+  const auto indexOf = [&](std::uint32_t v) {
+    const glm::dvec3 p = ribbon.vertices[v].position;
+    return pointIndex.try_emplace({p.x, p.y, p.z}, static_cast<int>(pointIndex.size())).first->second;
+  };
+  for (const Ribbon::Triangle& t : ribbon.triangles) {
+    const std::array<int, 3> at{indexOf(t.a), indexOf(t.b), indexOf(t.c)};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const int a = at[i], b = at[(i + 1) % 3];
+      edges[{std::min(a, b), std::max(a, b)}] += a < b ? 1 : -1;
+    }
+  }
+  std::size_t open = 0;
+  for (const auto& [edge, sum] : edges) open += sum != 0 ? 1 : 0;
+  EXPECT_EQ(open, 0u) << "of " << edges.size();
+}
+
+/// Each triangle faces the way its corners' normals do; how far they turn from it at most, as a cosine.
+double leastFacing(const Ribbon& ribbon) {
+  double least = 1;
+  for (const Ribbon::Triangle& t : ribbon.triangles) {
+    const Ribbon::Vertex &a = ribbon.vertices[t.a], &b = ribbon.vertices[t.b], &c = ribbon.vertices[t.c];
+    const glm::dvec3 n = glm::cross(b.position - a.position, c.position - a.position);
+    if (glm::length(n) < 1e-9) continue;
+    for (const Ribbon::Vertex* v : {&a, &b, &c})
+      least = std::min(least, glm::dot(glm::normalize(n), v->normal));
+  }
+  return least;
+}
+
+double volumeOf(const Ribbon& ribbon) {
+  double volume = 0;
+  for (const Ribbon::Triangle& t : ribbon.triangles)
+    volume += glm::dot(ribbon.vertices[t.a].position,
+                       glm::cross(ribbon.vertices[t.b].position, ribbon.vertices[t.c].position)) /
+              6;
+  return volume;
+}
+
+TEST(Ribbon, isClosedAndItsNormalsPointOutward) {
+  for (const char* name :
+       {"1ubq.pdb", "1cbs.cif.gz", "133d.pdb", "1lcd.cif.gz", "2hhb.pdb.gz", "3al1.pdb.gz"}) {
+    SCOPED_TRACE(name);
+    const Molecule molecule = readMolecule(name);
+    for (const RibbonStyle style : {RibbonStyle::cartoon, RibbonStyle::putty}) {
+      const Ribbon ribbon = makeRibbon(molecule, {}, style, 1);
+      ASSERT_GT(ribbon.triangles.size(), 1000u);
+      expectClosed(ribbon);
+      EXPECT_GT(volumeOf(ribbon), 100);
+      for (const Ribbon::Vertex& v : ribbon.vertices) ASSERT_NEAR(glm::length(v.normal), 1, 1e-9);
+      // The chords of 1/12 of a residue and 1/16 of a turn; more where a ribbon is bent at its edge.
+      EXPECT_GT(leastFacing(ribbon), 0.0);
+    }
+  }
+}
+
+TEST(Ribbon, partsAreClosedTooAndTheWholeBendsThem) {
+  const Molecule molecule = readMolecule("1ubq.pdb");
+  std::vector<bool> chosen(molecule.atomCount());
+  for (std::uint32_t a = molecule.residues[20].atoms.first; a < molecule.residues[45].atoms.end(); ++a)
+    chosen[a] = true;
+  const Ribbon part = makeRibbon(molecule, chosen, RibbonStyle::cartoon, 1);
+  expectClosed(part);
+  EXPECT_LT(part.triangles.size(), makeRibbon(molecule, {}, RibbonStyle::cartoon, 1).triangles.size());
+  for (const Ribbon::Triangle& t : part.triangles) EXPECT_TRUE(chosen[t.atom]);
+}
+
+TEST(Ribbon, passesItsTraceAtomsAndFillingLiesWithin) {
+  const Molecule molecule = readMolecule("2hhb.pdb.gz");  // helices and coils only: the path is not smoothed
+  const Ribbon ribbon = makeRibbon(molecule, {}, RibbonStyle::cartoon, 1);
+  std::vector<double> nearest(molecule.atomCount(), 1e9);
+  for (const Ribbon::Ball& ball : ribbon.filling)
+    nearest[ball.atom] =
+        std::min(nearest[ball.atom], glm::distance(ball.center, molecule.positions[ball.atom]));
+  std::size_t checked = 0;
+  for (std::uint32_t atom = 0; atom < molecule.atomCount(); ++atom) {
+    if (nearest[atom] > 1e8) continue;
+    EXPECT_LT(nearest[atom], 1e-6);
+    ++checked;
+  }
+  EXPECT_GT(checked, 500u);
+  for (std::size_t i = 0; i < ribbon.filling.size(); i += 97) {
+    const Ribbon::Ball& ball = ribbon.filling[i];
+    double outside = 1e9;
+    for (const Ribbon::Vertex& v : ribbon.vertices)
+      outside = std::min(outside, glm::distance(v.position, ball.center));
+    EXPECT_GT(outside, 0.85 * ball.radius);  // vertices are spaced by about the radius
+  }
+}
+
+TEST(Ribbon, becomesPrimitivesOfEveryPlacement) {
+  auto molecule = std::make_shared<Molecule>(readMolecule("133d.pdb"));
+  SceneObject object;
+  object.molecule = molecule;
+  object.representation = Representation::cartoon;
+  object.placements = placeOnce(*molecule);
+  Scene scene;
+  scene.objects = {object};
+  const Primitives one = buildPrimitives(scene);
+  EXPECT_EQ(one.cylinders.size(), 12u);  // rungs
+  EXPECT_EQ(one.mesh.surfaces.size(), one.mesh.triangles.size());
+  object.placements.push_back(object.placements[0]);
+  object.placements[1].transform[3].x = 100;
+  scene.objects = {object};
+  const Primitives two = buildPrimitives(scene);
+  EXPECT_EQ(two.mesh.triangles.size(), 2 * one.mesh.triangles.size());
+  const auto atoms = static_cast<std::uint32_t>(molecule->atomCount());
+  EXPECT_EQ(two.mesh.surfaces.back().id, one.mesh.surfaces.back().id + atoms);
+  EXPECT_GT(two.bounds().radius, one.bounds().radius + 40);
+
+  object.placements.resize(1);
+  object.representation = Representation::backbone;
+  scene.objects = {object};
+  const Primitives trace = buildPrimitives(scene);
+  EXPECT_EQ(trace.spheres.size(), 12u);
+  EXPECT_EQ(trace.cylinders.size(), 10u);
+}
+
+}  // namespace
+}  // namespace meniscus::test
