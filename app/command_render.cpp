@@ -129,7 +129,6 @@ void RenderRun::checkBeforeReading() const {
   std::vector<std::string> files;
   for (const Input& input : inputs_) files.push_back(input.file);
   requireDistinctOutputs(pattern_, files);
-  requireFilmNames(options_, pattern_);
   std::vector<std::pair<const char*, std::string>> selections{{"--select", options_.structure.select},
                                                               {"--focus", options_.focus}};
   for (const ShownApart& shown : options_.shown) selections.emplace_back("--show", shown.cid);
@@ -165,8 +164,9 @@ Prepared RenderRun::prepare(const Input& input) const {
   const auto start = Clock::now();
   try {
     const auto isDone = [&](const std::string& content) {
-      prepared.key = contentHash(fmt::format("{}\n{}\n{}\n{}\n{}", version(), content,
-                                             options_.pictureOptions, options_.turntable, options_.output));
+      prepared.key =
+          contentHash(fmt::format("{}\n{}\n{}\n{}\n{}", version(), content, options_.pictureOptions,
+                                  options_.turntable, pattern_.nameFor(input.file, {})));
       prepared.done = options_.resume && manifest_->allDone(prepared.key);
       return prepared.done;
     };

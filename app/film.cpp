@@ -56,6 +56,10 @@ void requireFilmNames(const RenderOptions& options, const OutputPattern& pattern
                     options.output, options.turntable));
   if (pattern.namesFrame() && (film || options.turntable == 0))
     throw UsageError("--output: {frame} numbers the pictures of a --turntable; a film has one name");
+  if (film && options.turntable == 0 && !options.structure.allModels && options.scenes.empty())
+    throw UsageError(
+        fmt::format("'{}': pictures are written as .png or .exr; a film needs --turntable or --model all",
+                    options.output));
   if (film && (pattern.namesModel() || pattern.namesState()))
     throw UsageError(
         "--output: a film holds all models or states of its input, so {model} and {state} cannot name it");

@@ -448,6 +448,7 @@ void requireConsistent(const CLI::App& app, RenderOptions& o) {
   if (!o.saveScene.empty() && !o.scenes.empty())
     throw UsageError(
         "--save-scene: writes what structure files and options mean; a scene is written already");
+  requireFilmNames(o, OutputPattern(o.output));
   if (o.resume && o.manifest.empty())
     throw UsageError("--resume: needs the --manifest of the run that is to be continued");
   requireSettingsConsistent(o);

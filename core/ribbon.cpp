@@ -136,6 +136,12 @@ void Sweep::chooseStates(const std::vector<SecondaryStructure>& secondary) {
 
 void Sweep::findPath() {
   for (const BackboneResidue& b : backbone_.residues) path_.push_back(m_.positions[b.trace]);
+  // A thick tube would fold where the trace turns sharply.
+  for (int pass = 0; pass < (style_ == RibbonStyle::putty ? 3 : 0); ++pass) {
+    const std::vector<glm::dvec3> before = path_;
+    for (std::size_t i = 1; i + 1 < path_.size(); ++i)
+      path_[i] = 0.25 * before[i - 1] + 0.5 * before[i] + 0.25 * before[i + 1];
+  }
   // Strands are pleated; a ribbon is not.
   const std::vector<glm::dvec3> plain = path_;
   for (std::size_t i = 1; i + 1 < path_.size(); ++i)

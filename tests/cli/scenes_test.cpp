@@ -149,7 +149,7 @@ TEST_F(Scenes, anInterruptFinishesThePictureAndTheRestIsResumed) {
 
 TEST_F(Scenes, aTimeLimitGivesUpAPicture) {
   const ProcessResult result = render({molecule("2hhb.pdb.gz"), molecule("c60.pdb"), "-o", "{stem}.png",
-                                       "--size", "4000x4000", "--samples", "256", "--time-limit", "0.2"});
+                                       "--size", "1000x1000", "--samples", "256", "--time-limit", "0.2"});
   EXPECT_EQ(result.exitCode, 1);
   EXPECT_NE(result.err.find("'2hhb.png': takes longer than the time limit of 0.2 s"), std::string::npos)
       << result.err;
