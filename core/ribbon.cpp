@@ -16,11 +16,12 @@ namespace {
 // Half widths and half thicknesses [Å]. Choices, near those in common use.
 constexpr double kTube = 0.3;
 constexpr double kHelixWidth = 1.3, kHelixThickness = 0.24;
-constexpr double kStrandWidth = 1.0, kStrandThickness = 0.22, kArrowWidth = 1.7, kArrowTip = 0.05;
+constexpr double kStrandWidth = 1.0, kStrandThickness = 0.22, kArrowWidth = 1.7, kArrowTip = 0.2;
 constexpr double kNucleicWidth = 1.0, kNucleicThickness = 0.3, kRung = 0.35;
 constexpr double kThinPutty = 0.2, kThickPutty = 1.5;
-// Share of an interval between residues in which a helix widens.
-constexpr double kWidening = 0.8;
+constexpr double kThinTube = 0.19;
+// Shares of an interval between residues in which a helix widens, and a tube gets thin before a strand.
+constexpr double kWidening = 0.8, kThinning = 0.35;
 
 // Steps from residue to residue, even: colours change half-way. With 12, the chords of a helix lie 0.006 Å
 // beneath its arc; with 16 around, those of a tube as much.
@@ -231,7 +232,15 @@ glm::dvec2 Sweep::tubeExtent(double u) const {
     if (!isHelix(i - 1)) share = std::min(share, smoothStep((u - static_cast<double>(i)) / kWidening));
     if (!isHelix(j + 1)) share = std::min(share, smoothStep((static_cast<double>(j) - u) / kWidening));
   }
-  return glm::mix(glm::dvec2(kTube), glm::dvec2(kHelixWidth, kHelixThickness), share) * size_;
+  // A tube goes thin into a strand, so that its end does not show.
+  const auto isStrand = [&](std::ptrdiff_t k) {
+    return k >= 0 && k <= last && states_[static_cast<std::size_t>(k)] == SecondaryStructure::strand;
+  };
+  double thin = 1;
+  if (isStrand(i)) thin = std::min(thin, smoothStep((u - static_cast<double>(i)) / kThinning));
+  if (isStrand(j)) thin = std::min(thin, smoothStep((static_cast<double>(j) - u) / kThinning));
+  const double tube = glm::mix(kThinTube, kTube, thin);
+  return glm::mix(glm::dvec2(tube), glm::dvec2(kHelixWidth, kHelixThickness), share) * size_;
 }
 
 double Sweep::strandWidth(double u, Piece piece) const {
@@ -339,7 +348,7 @@ void Sweep::fill(double from, double to, Piece piece) {
       const double x = beside > 0 ? reach * k / beside : 0.0;
       // Within an ellipse there is less room towards its rim.
       const double share = piece == Piece::tube ? 1 - x * x / (extent.x * extent.x) : 1.0;
-      out_.filling.push_back({section.place + x * section.side, 0.95 * radius * std::sqrt(share), atomAt(u)});
+      out_.filling.push_back({section.place + x * section.side, 0.8 * radius * std::sqrt(share), atomAt(u)});
     }
   }
 }
