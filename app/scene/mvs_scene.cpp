@@ -72,6 +72,7 @@ class StateReader {
   Preparation made_;
   Picture picture_;
   MvsCamera camera_;
+  std::optional<double> surfaceOpacity_;    // of the first surface
   std::vector<const MvsNode*> wholeFocus_;  // focus nodes under the root, about everything
   std::map<std::string, ReadStructure>& structures_;
 };
@@ -109,6 +110,10 @@ Preparation StateReader::read() {
   requireMemory(name_, atoms, glm::dvec3(1.0));
   for (const MvsNode* node : wholeFocus_) camera_.readFocus(*node, all, made_.unsupported);
   picture_.scene.camera = camera_.camera(options, all);
+  // What is set for the picture, here or on the command line, has its way.
+  const auto setsOpacity = [](const auto& option) { return option.first == "opacity"; };
+  if (surfaceOpacity_ && std::none_of(options.given.begin(), options.given.end(), setsOpacity))
+    options.surface.opacity = *surfaceOpacity_;
   picture_.input = name_;
   picture_.place.state = state_.key;
   picture_.output = OutputPattern(given_.output).nameFor(name_, picture_.place);
@@ -366,16 +371,23 @@ void StateReader::readRepresentation(const MvsNode& node, const MvsNode& compone
   if (atoms.size() < structure.molecule->atomCount()) object.atoms = std::move(atoms);
   setColors(node, custom("color").has_value() || custom("carbons").has_value(), object);
   std::vector<MvsClip> clips;
+  double opacity = 1;
   for (const MvsNode& child : node.children()) {
     if (child.kind() == "clip") {
       clips.emplace_back(child, made_.unsupported);
     } else if (child.kind() == "opacity") {
-      const double opacity = child.at("opacity").number();
+      opacity = child.at("opacity").number();
       if (!(opacity >= 0 && opacity <= 1)) child.at("opacity").fail("must be from 0 to 1");
-      if (opacity < 1) leaveOut(child, "everything is drawn opaque");
+      if (opacity < 1 && object.representation != Representation::surface)
+        leaveOut(child, "only surfaces can be translucent");
     } else if (child.kind() != "color") {
       leaveOut(child, fmt::format("nodes of kind '{}' are not supported", child.kind()));
     }
+  }
+  if (object.representation == Representation::surface) {
+    if (surfaceOpacity_ && *surfaceOpacity_ != opacity)
+      leaveOut(node, "all surfaces of a picture are as opaque as the first");
+    surfaceOpacity_ = surfaceOpacity_.value_or(opacity);
   }
   if (clips.empty()) {
     addObject(std::move(object), structure);

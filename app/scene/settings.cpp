@@ -20,6 +20,7 @@ constexpr std::array kSettings = std::to_array<Setting>({
     {"dpi", picture, number},
     {"channels", picture, list},
     {"style", picture, text},
+    {"opacity", picture, number},
     {"surface-method", picture, text},
     {"surface-option", picture, pairs},
     {"label-size", picture, number},

@@ -263,6 +263,22 @@ TEST_F(SceneReader, clipsCutAwayAtomsByTheirCentres) {
   for (const std::uint32_t atom : box.atoms) EXPECT_LE(std::abs(box.molecule->positions[atom].x - 30), 3);
 }
 
+TEST_F(SceneReader, surfacesAreAsOpaqueAsTheirNodeSays) {
+  const auto made = [&](std::vector<Json> components, Json meniscus = Json::object()) {
+    Json scene = structureScene("1ubq.pdb", std::move(components));
+    scene["root"] = withCustom(scene["root"], std::move(meniscus));
+    return read(scene);
+  };
+  const Json half = node("opacity", {{"opacity", 0.5}});
+  EXPECT_EQ(made({shown("protein", "surface", {half})}).pictures[0].options.surface.opacity, 0.5);
+  EXPECT_EQ(
+      made({shown("protein", "surface", {half})}, {{"opacity", 0.2}}).pictures[0].options.surface.opacity,
+      0.2);
+  EXPECT_EQ(made({shown("protein", "surface")}).pictures[0].options.surface.opacity, 1);
+  EXPECT_TRUE(made({shown("protein", "surface", {half}), shown("protein", "cartoon")}).unsupported.empty());
+  EXPECT_EQ(made({shown("protein", "surface", {half}), shown("water", "surface")}).unsupported.size(), 1u);
+}
+
 TEST_F(SceneReader, labelsStandAtTheirComponents) {
   const Scene scene = sceneOf(structureScene(
       "1ubq.pdb",
@@ -288,7 +304,7 @@ TEST_F(SceneReader, whatIsNotSupportedIsListedWithItsPlaceAndReason) {
     return false;
   };
   EXPECT_TRUE(
-      listed("root.children[0].children[0].children[0].children[0].children[0].children[0]: everything"));
+      listed("root.children[0].children[0].children[0].children[0].children[0].children[0]: only surfaces"));
   EXPECT_TRUE(listed("children[1].children[0]: the representation 'carbohydrate'"));
   EXPECT_TRUE(listed("params.selector.atom_index"));
   EXPECT_TRUE(listed("children[3]: nodes of kind 'label_from_uri'"));
