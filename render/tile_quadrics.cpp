@@ -1,6 +1,9 @@
 #include "render/tile_quadrics.h"
 
+#include <utility>
+
 #include "core/tiles/instruction_sets.h"
+#include "core/tiles/quadric_source.h"
 
 namespace meniscus {
 
@@ -17,9 +20,16 @@ void TileQuadrics::setPrimitives(std::shared_ptr<const Primitives> primitives) {
   primitives_ = std::move(primitives);
   camera_ = {};
   light_ = {};
-  camera_.setPrimitives(primitives_.get());
-  light_.setPrimitives(primitives_.get());
   planes_ = {};
+  prepared_ = false;
+}
+
+// Clusters are made once for both, and not before something is drawn.
+void TileQuadrics::prepare() {
+  if (std::exchange(prepared_, true)) return;
+  const auto clusters = std::make_shared<const tiles::Clusters>(tiles::clustersOf(*primitives_));
+  camera_.setPrimitives(primitives_.get(), clusters);
+  light_.setPrimitives(primitives_.get(), clusters);
 }
 
 void TileQuadrics::add(FrameGraph& graph, const View& view, const Tile& tile, glm::vec2 sampleShift,
@@ -35,6 +45,7 @@ void TileQuadrics::add(FrameGraph& graph, const View& view, const Tile& tile, gl
   }
   const tiles::TileTarget target{
       view, primitives_->origin, {tile.x, tile.y, tile.width, tile.height}, sampleShift};
+  prepare();
   tiles::QuadricTiles& caster = prefix.empty() ? camera_ : light_;
   // The framebuffer is bound for nothing but its clearing: the part with no block in it stays background.
   graph.addPass(prefix + "tiles", {}, writes, [this, &caster, target, g](const PassContext& context) {

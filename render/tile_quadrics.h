@@ -31,9 +31,12 @@ class TileQuadrics {
            const GBufferRefs& gbuffer, const std::string& prefix = {});
 
  private:
+  void prepare();
+
   std::shared_ptr<const Primitives> primitives_;
   tiles::QuadricTiles camera_, light_;  // lists of the picture outlive a shadow map
   tiles::Planes planes_;
+  bool prepared_ = false;
 };
 
 }  // namespace meniscus

@@ -9,10 +9,14 @@
 
 namespace meniscus::tiles {
 
-void FieldTiles::setField(const MetaballField* field) {
+void FieldTiles::setField(const MetaballField* field, std::shared_ptr<const Clusters> clusters) {
   field_ = field;
-  clusters_ = clustersOf(*field);
+  clusters_ = std::move(clusters);
   valid_ = wholeValid_ = false;
+}
+
+void FieldTiles::setField(const MetaballField* field) {
+  setField(field, std::make_shared<const Clusters>(clustersOf(*field)));
 }
 
 namespace {
@@ -54,7 +58,7 @@ Tiles castBlock(const MetaballSource& source, const MetaballField& field, const 
 void FieldTiles::cast(const TileTarget& target, const PlaneChannels& channels, Planes& planes) {
   const MetaballSource source(*field_, target);
   if (!valid_ || !sameLists(listed_, target)) {
-    lists_.build(source, clusters_, target);
+    lists_.build(source, *clusters_, target);
     listed_ = target;
     valid_ = true;
     wholeValid_ = false;
@@ -69,7 +73,7 @@ void FieldTiles::cast(const TileTarget& target, const PlaneChannels& channels, P
                                                    Tiles().set(), channels, planes, counts.local());
   });
   if (std::any_of(again.begin(), again.end(), [](const Tiles& tiles) { return tiles.any(); })) {
-    if (!wholeValid_) whole_.build(source, clusters_, target, false);
+    if (!wholeValid_) whole_.build(source, *clusters_, target, false);
     wholeValid_ = true;
     tbb::parallel_for(0, blocks, [&](int b) {
       const Tiles& tiles = again[static_cast<std::size_t>(b)];

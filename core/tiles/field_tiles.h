@@ -2,6 +2,8 @@
 // Draws a metaball field from tile lists, on all processors, by the widest vectors there are: exact, with no
 // limit on how many balls overlap or how deep the scene is.
 
+#include <memory>
+
 #include "core/tiles/field_caster.h"
 #include "core/tiles/tile_lists.h"
 
@@ -9,7 +11,8 @@ namespace meniscus::tiles {
 
 class FieldTiles {
  public:
-  /// What to draw from now on; must outlive the next call.
+  /// What to draw from now on; must outlive the next call. clusters: of the same field.
+  void setField(const MetaballField* field, std::shared_ptr<const Clusters> clusters);
   void setField(const MetaballField* field);
   /// As QuadricTiles::cast().
   void cast(const TileTarget& target, const PlaneChannels& channels, Planes& planes);
@@ -20,7 +23,7 @@ class FieldTiles {
 
  private:
   const MetaballField* field_ = nullptr;
-  Clusters clusters_;
+  std::shared_ptr<const Clusters> clusters_;
   TileLists lists_;
   TileLists whole_;  // not cut: for tiles in which a ray begins inside the surface
   TileTarget listed_;

@@ -39,6 +39,10 @@ class MetaballSource : public TileSource {
   Placement placeBall(const glm::vec3& center, float radius) const override {
     return projection_.placeSphere(center, static_cast<double>(radius));
   }
+  void placeBalls(const Cluster& cluster, std::span<const Clusters::Ball> balls,
+                  Placement* out) const override {
+    projection_.placeBalls(cluster, balls, out);
+  }
   /// Discs of the cores in which one ball alone reaches the level, if no ball takes anything away. They hide
   /// what lies behind from rays that begin outside of the surface.
   Occluder occluder(std::size_t index) const override;

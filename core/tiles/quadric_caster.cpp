@@ -176,6 +176,9 @@ bool castOne(const QuadricRecord& q, std::uint32_t index, bool shape, const Tile
   switch (q.kind) {
     case QuadricKind::sphere:
       for (std::size_t k = 0; k < kTilePixels; k += laneCount()) {
+        const auto lowest = static_cast<float>(k / kTileSize) + 0.5f,
+                   highest = static_cast<float>((k + laneCount() - 1) / kTileSize) + 0.5f;
+        if (y0 + q.highY < lowest || y0 + q.lowY > highest) continue;
         const Chord c = sphereChord(rayOf(rays, s, q, x0, y0, k), all(q.radius));
         any = keepNearest(c, q, index, shape, rays, k, s) || any;
       }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 
 namespace meniscus::tiles {
 
@@ -74,6 +75,8 @@ Occluder QuadricSource::occluder(std::size_t index) const {
 void QuadricSource::record(std::size_t index, QuadricRecord& out) const {
   const std::size_t spheres = primitives_.spheres.size(), rods = primitives_.cylinders.size();
   out = {};
+  out.lowY = -std::numeric_limits<float>::infinity();
+  out.highY = std::numeric_limits<float>::infinity();
   glm::dvec3 center;
   double size = 0, reach = 0;
   if (index < spheres) {
@@ -123,6 +126,7 @@ void QuadricSource::record(std::size_t index, QuadricRecord& out) const {
   out.centerZ = static_cast<float>(p.view.z);
   out.eyeAbove = static_cast<float>(projection_.eyeZ() - p.view.z);
   out.front = static_cast<float>(p.view.z + reach);
+  if (out.kind == QuadricKind::sphere) projection_.rowsOf(p, out.radius, out.lowY, out.highY);
   const double range = projection_.range(p);
   out.rangeHi = static_cast<float>(range);
   out.rangeLo = static_cast<float>(range - static_cast<double>(out.rangeHi));

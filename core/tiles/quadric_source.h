@@ -19,6 +19,7 @@ struct QuadricRecord {
   float centerX, centerY, centerZ;  ///< view space
   float eyeAbove;                   ///< z of the eye above the centre
   float radius;                     ///< sphere, cylinder
+  float lowY, highY;                ///< no ray farther from pixelY meets it [pixels]; rounding included
   float front;                      ///< largest z of its points in view space
   float rangeHi, rangeLo;           ///< distance of the centre along its ray
   QuadricKind kind;
@@ -43,6 +44,10 @@ class QuadricSource : public TileSource {
   bool isBall(std::size_t index) const override { return index < primitives_.spheres.size(); }
   Placement placeBall(const glm::vec3& center, float radius) const override {
     return projection_.placeSphere(center, static_cast<double>(radius));
+  }
+  void placeBalls(const Cluster& cluster, std::span<const Clusters::Ball> balls,
+                  Placement* out) const override {
+    projection_.placeBalls(cluster, balls, out);
   }
   Occluder occluder(std::size_t index) const override;
   void record(std::size_t index, QuadricRecord& out) const;

@@ -2,21 +2,27 @@
 
 #include <tbb/parallel_for.h>
 
+#include <utility>
+
 #include "core/tiles/quadric_caster.h"
 #include "core/tiles/quadric_source.h"
 
 namespace meniscus::tiles {
 
-void QuadricTiles::setPrimitives(const Primitives* primitives) {
+void QuadricTiles::setPrimitives(const Primitives* primitives, std::shared_ptr<const Clusters> clusters) {
   primitives_ = primitives;
-  clusters_ = clustersOf(*primitives);
+  clusters_ = std::move(clusters);
   valid_ = false;
+}
+
+void QuadricTiles::setPrimitives(const Primitives* primitives) {
+  setPrimitives(primitives, std::make_shared<const Clusters>(clustersOf(*primitives)));
 }
 
 void QuadricTiles::cast(const TileTarget& target, const PlaneChannels& channels, Planes& planes) {
   const QuadricSource source(*primitives_, target);
   if (!valid_ || !sameLists(listed_, target)) {
-    lists_.build(source, clusters_, target);
+    lists_.build(source, *clusters_, target);
     listed_ = target;
     valid_ = true;
     ++builds_;

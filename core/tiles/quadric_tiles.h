@@ -1,6 +1,8 @@
 #pragma once
 // Draws the quadrics of Primitives from tile lists, on all processors, by the widest vectors there are.
 
+#include <memory>
+
 #include "core/primitives.h"
 #include "core/tiles/tile_lists.h"
 
@@ -8,7 +10,8 @@ namespace meniscus::tiles {
 
 class QuadricTiles {
  public:
-  /// What to draw from now on; must outlive the next call.
+  /// What to draw from now on; must outlive the next call. clusters: of the same primitives.
+  void setPrimitives(const Primitives* primitives, std::shared_ptr<const Clusters> clusters);
   void setPrimitives(const Primitives* primitives);
   /// Fills planes of the part of target.area outside of which there is nothing but background (at least one
   /// pixel). Lists are built again only if something but the sample's shift has changed.
@@ -19,7 +22,7 @@ class QuadricTiles {
 
  private:
   const Primitives* primitives_ = nullptr;
-  Clusters clusters_;
+  std::shared_ptr<const Clusters> clusters_;
   TileLists lists_;
   TileTarget listed_;
   bool valid_ = false;

@@ -8,46 +8,15 @@
 #include <bit>
 #include <cmath>
 
+#include "core/tiles/chunks.h"
+
 namespace meniscus::tiles {
 
 namespace {
 
-constexpr std::size_t kLeastChunk = 4096;  // primitives that one task sorts or distributes
-constexpr std::size_t kMostChunks = 64;
 constexpr float kLeastDisc = 0.70f;  // half the diagonal of a cell [pixels]
 constexpr std::size_t kSlabs = 16, kFewestClusters = 128;
 constexpr std::uint64_t kAllCells = ~std::uint64_t{0};
-
-struct Chunks {
-  std::size_t size, count;
-};
-Chunks chunksOf(std::size_t count) {
-  const std::size_t size = std::max(kLeastChunk, (count + kMostChunks - 1) / kMostChunks);
-  return {size, (count + size - 1) / size};
-}
-
-// Calls f(chunk, first, last) for each chunk, in parallel.
-template <typename F>
-void forChunks(std::size_t count, F f) {
-  const Chunks chunks = chunksOf(count);
-  tbb::parallel_for(std::size_t{0}, chunks.count,
-                    [&](std::size_t c) { f(c, c * chunks.size, std::min(count, (c + 1) * chunks.size)); });
-}
-
-// Turns counts, chunk by chunk for each of `bins`, into the places where each chunk's share of each bin
-// begins; returns the sum.
-std::size_t placeBins(std::vector<std::size_t>& counts, std::size_t chunks, std::size_t bins) {
-  std::size_t sum = 0;
-  for (std::size_t b = 0; b < bins; ++b) {
-    for (std::size_t c = 0; c < chunks; ++c) {
-      std::size_t& slot = counts[c * bins + b];
-      const std::size_t here = slot;
-      slot = sum;
-      sum += here;
-    }
-  }
-  return sum;
-}
 
 // Of the 8 x 8 cells of a tile, those that lie in a disc; x, y: its centre relative to the tile's corner.
 std::uint64_t cellsInside(float x, float y, float radius) {
@@ -75,7 +44,7 @@ std::uint32_t TileLists::bucketOf(float front) const {
 }
 
 // Into sorted_, in order of their buckets; within a bucket as they came.
-void TileLists::sortByDepth(std::vector<Placed>& items) {
+void TileLists::sortByDepth(const std::vector<Placed>& items) {
   const std::size_t count = items.size(), chunks = chunksOf(count).count;
   float nearest = -std::numeric_limits<float>::infinity(), farthest = std::numeric_limits<float>::infinity();
   for (const Placed& p : items) {
@@ -84,15 +53,15 @@ void TileLists::sortByDepth(std::vector<Placed>& items) {
   }
   const std::uint32_t firstBucket = bucketOf(nearest);
   const std::size_t used = count > 0 ? bucketOf(farthest) - firstBucket + 1 : 0;
-  std::vector<std::size_t> bins(chunks * used, 0);
+  bins_.assign(chunks * used, 0);
   const auto binOf = [&](const Placed& p) { return bucketOf(p.place.front) - firstBucket; };
   forChunks(count, [&](std::size_t c, std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) ++bins[c * used + binOf(items[i])];
+    for (std::size_t i = first; i < last; ++i) ++bins_[c * used + binOf(items[i])];
   });
-  placeBins(bins, chunks, used);
+  placeBins(bins_, chunks, used);
   sorted_.resize(count);
   forChunks(count, [&](std::size_t c, std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) sorted_[bins[c * used + binOf(items[i])]++] = items[i];
+    for (std::size_t i = first; i < last; ++i) sorted_[bins_[c * used + binOf(items[i])]++] = items[i];
   });
 }
 
@@ -100,7 +69,7 @@ void TileLists::sortByDepth(std::vector<Placed>& items) {
 void TileLists::distribute() {
   const std::size_t count = sorted_.size(), chunks = chunksOf(count).count;
   const auto blockCount = static_cast<std::size_t>(grid_.blocks());
-  std::vector<std::size_t> bins(chunks * blockCount, 0);
+  bins_.assign(chunks * blockCount, 0);
   const auto forBlocks = [&](const Placement& p, auto f) {
     for (int y = p.y0 / kBlockTiles; y <= p.y1 / kBlockTiles; ++y) {
       for (int x = p.x0 / kBlockTiles; x <= p.x1 / kBlockTiles; ++x)
@@ -109,15 +78,15 @@ void TileLists::distribute() {
   };
   forChunks(count, [&](std::size_t c, std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i)
-      forBlocks(sorted_[i].place, [&](std::size_t block) { ++bins[c * blockCount + block]; });
+      forBlocks(sorted_[i].place, [&](std::size_t block) { ++bins_[c * blockCount + block]; });
   });
-  blockEntries_.resize(placeBins(bins, chunks, blockCount));
+  blockEntries_.resize(placeBins(bins_, chunks, blockCount));
   blockFirst_.assign(blockCount + 1, blockEntries_.size());
-  for (std::size_t b = 0; b < blockCount && chunks > 0; ++b) blockFirst_[b] = bins[b];
+  for (std::size_t b = 0; b < blockCount && chunks > 0; ++b) blockFirst_[b] = bins_[b];
   forChunks(count, [&](std::size_t c, std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       forBlocks(sorted_[i].place, [&](std::size_t block) {
-        blockEntries_[bins[c * blockCount + block]++] = static_cast<std::uint32_t>(i);
+        blockEntries_[bins_[c * blockCount + block]++] = static_cast<std::uint32_t>(i);
       });
     }
   });
@@ -219,62 +188,73 @@ bool TileLists::hidden(const Placement& p) const {
 }
 
 void TileLists::fillWhole(const TileSource& source, bool cut) {
-  std::vector<Placed> placed(source.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, placed.size(), kLeastChunk), [&](const auto& range) {
+  placed_.resize(source.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, placed_.size(), kLeastChunk), [&](const auto& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i)
-      placed[i] = {source.place(i), static_cast<std::uint32_t>(i)};
+      placed_[i] = {source.place(i), static_cast<std::uint32_t>(i)};
   });
-  placedCount_ = placed.size();
-  std::erase_if(placed, [](const Placed& p) { return !p.place.visible(); });
-  sortByDepth(placed);
+  placedCount_ = placed_.size();
+  std::erase_if(placed_, [](const Placed& p) { return !p.place.visible(); });
+  sortByDepth(placed_);
   fillAll(source, cut);
+}
+
+// Into parts_ the primitives of clusters that can be seen, in order.
+void TileLists::openClusters(const TileSource& source, const Clusters& clusters, std::span<const Placed> some,
+                             bool cut) {
+  constexpr std::size_t kFewest = 8;  // clusters for a task
+  const std::size_t perPart = std::max((some.size() + kMostChunks - 1) / kMostChunks, kFewest);
+  const std::size_t count = (some.size() + perPart - 1) / perPart;
+  if (parts_.size() < count) parts_.resize(count);
+  for (std::vector<Placed>& part : parts_) part.clear();
+  std::atomic<std::size_t> looked = 0;
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t part) {
+    std::array<Placement, kClusterSize> placements;
+    for (const Placed& c : some.subspan(part * perPart, std::min(perPart, some.size() - part * perPart))) {
+      if (cut && hidden(c.place)) continue;
+      const Cluster& cluster = clusters.list()[c.index];
+      looked += cluster.last - cluster.first;
+      source.placeBalls(cluster, clusters.balls().subspan(cluster.first, cluster.last - cluster.first),
+                        placements.data());
+      for (std::uint32_t i = cluster.first; i < cluster.last; ++i) {
+        Placed p{placements[i - cluster.first], clusters.order()[i]};
+        if (!p.place.visible() || (cut && hidden(p.place))) continue;
+        if (!source.isBall(p.index)) p.place = source.place(p.index);
+        if (p.place.visible()) parts_[part].push_back(p);
+      }
+    }
+  });
+  placedCount_ += looked;
 }
 
 // Slabs end between buckets, so that the order of a list does not depend on them.
 void TileLists::fillBySlabs(const TileSource& source, const Clusters& clusters, bool cut) {
   const std::span<const Cluster> all = clusters.list();
-  std::vector<Placed> placed(all.size());
+  placed_.resize(all.size());
   tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t c) {
-    placed[c] = {source.placeBall(all[c].center, all[c].radius), static_cast<std::uint32_t>(c)};
+    placed_[c] = {source.placeBall(all[c].center, all[c].radius), static_cast<std::uint32_t>(c)};
   });
-  std::erase_if(placed, [](const Placed& p) { return !p.place.visible(); });
-  sortByDepth(placed);
-  const std::vector<Placed> order = sorted_;
+  std::erase_if(placed_, [](const Placed& p) { return !p.place.visible(); });
+  sortByDepth(placed_);
+  clusterOrder_.swap(sorted_);
+  const std::vector<Placed>& order = clusterOrder_;
   const std::size_t perSlab = std::max<std::size_t>(order.size() / kSlabs, kFewestClusters);
-  std::vector<Placed> waiting, active;  // primitives of opened clusters, behind this slab and in it
+  waiting_.clear();  // primitives of opened clusters, behind this slab
   for (std::size_t next = 0; next < order.size();) {
     std::size_t end = std::min(next + perSlab, order.size());
     while (end < order.size() && bucketOf(order[end].place.front) == bucketOf(order[end - 1].place.front))
       ++end;
     const std::uint32_t limit = end < order.size() ? bucketOf(order[end].place.front) : buckets_;
-    // Each part keeps its order.
-    const std::size_t perPart = std::max<std::size_t>((end - next + kMostChunks - 1) / kMostChunks, 8);
-    std::vector<std::vector<Placed>> parts((end - next + perPart - 1) / perPart);
-    std::atomic<std::size_t> looked = 0;
-    tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t part) {
-      for (std::size_t k = next + part * perPart; k < std::min(end, next + (part + 1) * perPart); ++k) {
-        if (cut && hidden(order[k].place)) continue;
-        const Cluster& cluster = all[order[k].index];
-        looked += cluster.last - cluster.first;
-        for (std::uint32_t i = cluster.first; i < cluster.last; ++i) {
-          const Clusters::Ball& ball = clusters.balls()[i];
-          Placed p{source.placeBall(ball.center, ball.radius), clusters.order()[i]};
-          if (!p.place.visible() || (cut && hidden(p.place))) continue;
-          if (!source.isBall(p.index)) p.place = source.place(p.index);
-          if (p.place.visible()) parts[part].push_back(p);
-        }
-      }
-    });
-    placedCount_ += looked;
-    active.clear();
-    std::vector<Placed> still;
+    openClusters(source, clusters, std::span(order).subspan(next, end - next), cut);
+    active_.clear();
+    stillWaiting_.clear();
     const auto take = [&](const std::vector<Placed>& from) {
-      for (const Placed& p : from) (bucketOf(p.place.front) < limit ? active : still).push_back(p);
+      for (const Placed& p : from) (bucketOf(p.place.front) < limit ? active_ : stillWaiting_).push_back(p);
     };
-    take(waiting);
-    for (const std::vector<Placed>& part : parts) take(part);
-    waiting.swap(still);
-    sortByDepth(active);
+    take(waiting_);
+    for (const std::vector<Placed>& part : parts_) take(part);
+    waiting_.swap(stillWaiting_);
+    sortByDepth(active_);
     fillAll(source, cut);
     next = end;
   }

@@ -8,28 +8,14 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
 #include "core/tiles/clusters.h"
+#include "core/tiles/placement.h"
 #include "core/tiles/tile_target.h"
 
 namespace meniscus::tiles {
-
-/// Where a primitive can be seen.
-struct Placement {
-  std::int16_t x0 = 0, y0 = 0, x1 = -1, y1 = -1;  ///< tiles of the grid, both ends included
-  /// View-space z that none of its points exceeds; -infinity: it is nowhere.
-  float front = -std::numeric_limits<float>::infinity();
-  bool visible() const { return front > -std::numeric_limits<float>::infinity(); }
-};
-
-/// A disc across the view (pixels of the picture) that hides what lies below z in view space. radius 0: none.
-struct Occluder {
-  double x = 0, y = 0;
-  float radius = 0, z = 0;
-};
 
 /// Primitives of any kind, by index. Everything is called from several threads.
 class TileSource {
@@ -42,6 +28,9 @@ class TileSource {
   virtual Occluder occluder(std::size_t index) const = 0;
   /// Where anything of a sphere can be seen, relative to the primitives' origin.
   virtual Placement placeBall(const glm::vec3& center, float radius) const = 0;
+  /// The same of the bounding spheres in a cluster; it may find them a little larger.
+  virtual void placeBalls(const Cluster& cluster, std::span<const Clusters::Ball> balls,
+                          Placement* out) const = 0;
 };
 
 /// The lists of a block of tiles.
@@ -65,7 +54,7 @@ class TileLists {
   const TileGrid& grid() const { return grid_; }
   const TileBlock& block(int index) const { return blocks_[static_cast<std::size_t>(index)]; }
   /// How much nearer a later entry of a list can be than an earlier one [Å].
-  float slack() const { return bucketDepth_ * 1.001f; }
+  float slack() const { return bucketDepth_ * 1.01f; }
   /// The smallest part of an area that holds all blocks with entries; one pixel if none has any.
   PixelArea occupied(const PixelArea& area) const;
   std::size_t entryCount() const;
@@ -91,7 +80,9 @@ class TileLists {
   void fillWhole(const TileSource& source, bool cut);
   void fillBySlabs(const TileSource& source, const Clusters& clusters, bool cut);
   bool hidden(const Placement& p) const;
-  void sortByDepth(std::vector<Placed>& items);
+  void sortByDepth(const std::vector<Placed>& items);
+  void openClusters(const TileSource& source, const Clusters& clusters, std::span<const Placed> some,
+                    bool cut);
   void distribute();
   void startBlock(int index);
   void fillBlock(int index, const TileSource& source, bool cut);
@@ -104,6 +95,10 @@ class TileLists {
   std::uint32_t buckets_ = 1;
   std::size_t placedCount_ = 0;
   std::vector<Placed> sorted_;
+  // Scratch that keeps its memory from view to view.
+  std::vector<Placed> placed_, clusterOrder_, active_, waiting_, stillWaiting_;
+  std::vector<std::vector<Placed>> parts_;
+  std::vector<std::size_t> bins_;
   std::vector<std::uint32_t> blockEntries_;  // positions in sorted_, block after block
   std::vector<std::size_t> blockFirst_;
   std::vector<Filling> filling_;

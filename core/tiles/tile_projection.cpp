@@ -25,6 +25,17 @@ TileProjection::TileProjection(const TileTarget& target)
       farZ_(static_cast<float>(target.view.farZ)),
       grid_(target.area) {
   block_.scale.z = perspective_ ? 1.0f : 0.0f;  // all that the shared bounds ask of a view
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column)
+      cluster_.rotation[3 * row + column] = static_cast<float>(rotation_[column][row]);
+  }
+  cluster_.tilesPerUnit = static_cast<float>(1 / (pixelSize_ * kTileSize));
+  cluster_.padding = kPadding / kTileSize;
+  cluster_.columns = grid_.columns;
+  cluster_.rows = grid_.rows;
+  cluster_.nearZ = nearZ_;
+  cluster_.farZ = farZ_;
+  cluster_.perspective = perspective_;
 }
 
 ProjectedPoint TileProjection::project(const glm::dvec3& center) const {
@@ -85,6 +96,38 @@ Placement TileProjection::placeSphere(const glm::dvec3& center, double radius) c
   const ProjectedPoint p = project(center);
   const Rectangle r = boundsOf(p, static_cast<float>(radius), {1, 0, 0}, {0, 1, 0}, {0, 0, 1});
   return placed(r, p.view.z + radius, p.view.z - radius);
+}
+
+void TileProjection::rowsOf(const ProjectedPoint& center, float radius, float& low, float& high) const {
+  constexpr float kRounding = 1e-5f, kSpare = 0.01f;  // of the extent; pixels
+  const auto depth = static_cast<float>(center.depth), perPixel = static_cast<float>(1 / pixelSize_);
+  const f32::Extent y =
+      f32::projectedExtent(block_, static_cast<float>(center.view.y) / depth, depth, radius, 0, 0);
+  if (!y.bounded) return;
+  const float spare = kRounding * perPixel * std::max(std::abs(y.low), std::abs(y.high)) + kSpare;
+  low = y.low * perPixel - spare;
+  high = y.high * perPixel + spare;
+}
+
+void TileProjection::placeBalls(const Cluster& cluster, std::span<const Clusters::Ball> balls,
+                                Placement* out) const {
+  const ProjectedPoint p = project(cluster.center);
+  const double radius = static_cast<double>(cluster.radius);
+  if (perspective_ && !(p.depth > 2 * radius)) {
+    std::transform(balls.begin(), balls.end(), out, [this](const Clusters::Ball& ball) {
+      return placeSphere(ball.center, static_cast<double>(ball.radius));
+    });
+    return;
+  }
+  ClusterView view = cluster_;
+  for (int k = 0; k < 3; ++k) view.center[k] = cluster.center[k];
+  view.z = static_cast<float>(p.view.z);
+  view.depth = static_cast<float>(p.depth);
+  view.slopeX = perspective_ ? static_cast<float>(p.view.x / p.depth) : 0.0f;
+  view.slopeY = perspective_ ? static_cast<float>(p.view.y / p.depth) : 0.0f;
+  view.tileX = static_cast<float>((p.pixel.x - grid_.x) / kTileSize);
+  view.tileY = static_cast<float>((p.pixel.y - grid_.y) / kTileSize);
+  tiles::placeBalls(view, balls, out);
 }
 
 Placement TileProjection::placeEllipsoid(const glm::dvec3& center, const glm::dvec3 (&axes)[3]) const {

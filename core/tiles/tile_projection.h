@@ -6,6 +6,7 @@
 #include <glm/mat3x3.hpp>
 
 #include "core/shared_math.h"
+#include "core/tiles/ball_placer.h"
 #include "core/tiles/tile_lists.h"
 #include "core/tiles/tile_target.h"
 
@@ -37,6 +38,10 @@ class TileProjection {
 
   /// Tiles that a sphere may touch with any of their pixels' rays; front = -infinity if none.
   Placement placeSphere(const glm::dvec3& center, double radius) const;
+  /// The same of the balls of a cluster, nearly as close.
+  void placeBalls(const Cluster& cluster, std::span<const Clusters::Ball> balls, Placement* out) const;
+  /// Bounds of a sphere's rows, relative to its projected centre [pixels]; untouched if it has none.
+  void rowsOf(const ProjectedPoint& center, float radius, float& low, float& high) const;
   /// axisA, axisB, axisC: semi-axes in world directions.
   Placement placeEllipsoid(const glm::dvec3& center, const glm::dvec3 (&axes)[3]) const;
   /// Both end discs of a cylinder.
@@ -63,6 +68,7 @@ class TileProjection {
   float nearZ_, farZ_;
   TileGrid grid_;
   f32::ViewBlock block_{};
+  ClusterView cluster_;  // but for what differs from cluster to cluster
 };
 
 }  // namespace meniscus::tiles

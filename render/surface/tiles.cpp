@@ -13,8 +13,9 @@ namespace {
 class Tiles : public SurfaceMethod {
  public:
   void prepare(const MetaballField& field) override {
-    camera_.setField(&field);
-    light_.setField(&field);
+    const auto clusters = std::make_shared<const tiles::Clusters>(tiles::clustersOf(field));
+    camera_.setField(&field, clusters);
+    light_.setField(&field, clusters);
   }
   void addPasses(FrameGraph& graph, ShaderLibrary& shaders, const SurfaceTarget& target) override;
   SurfaceStats takeStats() override;
