@@ -1,7 +1,7 @@
 // Spheres from tile lists against splatting them and against Embree, binning or build included, 1024 x 768, a
 // ball of atoms as dense as a protein that fills the height.
 //
-//   tiles [repetitions [atoms ...]] > tiles.csv
+//   tiles [repetitions [frames | atoms ...]] > tiles.csv
 //
 // Times are medians of interleaved repetitions, by the clock and of the processor (all threads: what a
 // machine busy with other work distorts less); ratios are within one run. Nothing is read back.
@@ -15,8 +15,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <glm/ext/matrix_transform.hpp>
 #include <map>
 #include <random>
+#include <string_view>
 
 #include "bench/bench_scenes.h"
 #ifdef MENISCUS_BENCH_EMBREE
@@ -206,7 +208,8 @@ void measure(int wanted, int repetitions) {
   std::fflush(stdout);
 }
 
-// A full frame, its view changing: soft shadows, silhouettes, depth unsharp masking, one ray per pixel.
+// A full frame: soft shadows, silhouettes, depth unsharp masking, one ray per pixel. Still: nothing but the
+// picture is drawn again. Turning: by a degree from frame to frame, so that light, lists and all are new.
 void measureFrames(int wanted, int repetitions) {
   const Primitives spheres = proteinLike(wanted);
   Primitives surface;
@@ -216,28 +219,49 @@ void measureFrames(int wanted, int repetitions) {
   settings.shadows.mode = ShadowMode::soft;
   settings.lines.silhouettes = true;
   settings.depthUnsharp.mode = UnsharpMode::both;
+  struct Kind {
+    std::string name;
+    const Primitives* scene;
+    double turn;  // [rad]
+    bool processor;
+  };
+  std::vector<Kind> kinds;
   const std::pair<const char*, const Primitives*> scenes[] = {{"spheres", &spheres}, {"surface", &surface}};
   for (const auto& [name, scene] : scenes) {
-    Renderer renderer(RendererOptions{.shaderDir = {}, .timePasses = true, .maxTileSize = 0});
-    renderer.setPrimitives(std::make_shared<Primitives>(*scene));
-    View view = filling(spheres);
-    AllTimes times;
-    std::map<std::string, double> passes;
-    for (int repetition = -1; repetition < repetitions; ++repetition) {
-      view.nearZ += 1e-6;
-      NullSink sink;
-      record(times, "frame", repetition >= 0,
-             [&] { renderer.renderPicture(view, Lighting{}, {}, settings, PixelFormat::rgba8, sink); });
-      for (const PassStats& pass : renderer.stats().passes) {
-        if (repetition < 0) passes[pass.name] -= pass.milliseconds;
-        if (repetition + 1 == repetitions) passes[pass.name] += pass.milliseconds;
+    kinds.push_back({fmt::format("{}, turning", name), scene, 0.01745, true});
+    kinds.push_back({fmt::format("{}, still", name), scene, 0, true});
+    kinds.push_back({fmt::format("{}, turning, effects by shaders", name), scene, 0.01745, false});
+  }
+  const std::size_t atoms = spheres.spheres.size();
+  for (const Kind& kind : kinds) {
+    for (const bool timed : {false, true}) {  // waiting after every pass costs some time itself
+      RendererOptions options;
+      options.timePasses = timed;
+      options.effectsOnProcessor = kind.processor;
+      Renderer renderer(options);
+      renderer.setPrimitives(std::make_shared<Primitives>(*kind.scene));
+      View view = filling(spheres);
+      AllTimes times;
+      std::map<std::string, double> passes;
+      for (int repetition = -1; repetition < repetitions; ++repetition) {
+        view.rotation = glm::dmat3(glm::rotate(glm::dmat4(view.rotation), kind.turn, glm::dvec3(0, 1, 0)));
+        NullSink sink;
+        record(times, "frame", repetition >= 0,
+               [&] { renderer.renderPicture(view, Lighting{}, {}, settings, PixelFormat::rgba8, sink); });
+        if (repetition < 0) renderer.forgetStats();
       }
+      if (!timed) {
+        fmt::print("frame,{},\"{}: frame\",{:.2f},{:.2f}\n", atoms, kind.name, median(times.at("frame").wall),
+                   median(times.at("frame").processor));
+        continue;
+      }
+      const RenderStats stats = renderer.stats();
+      for (const PassStats& pass : stats.passes)
+        fmt::print("frame,{},\"{}: {} (mean)\",{:.2f},\n", atoms, kind.name, pass.name,
+                   pass.milliseconds / repetitions);
+      fmt::print("frame,{},\"{}: read back (mean)\",{:.2f},\n", atoms, kind.name,
+                 stats.readbackMs / repetitions);
     }
-    fmt::print("frame,{},\"{}: frame\",{:.2f},{:.2f}\n", spheres.spheres.size(), name,
-               median(times.at("frame").wall), median(times.at("frame").processor));
-    for (const auto& [pass, ms] : passes)
-      fmt::print("frame,{},\"{}: {} (mean)\",{:.2f},\n", spheres.spheres.size(), name, pass,
-                 ms / repetitions);
   }
   std::fflush(stdout);
 }
@@ -279,6 +303,10 @@ int main(int argc, char** argv) {
     const auto context = Context::create(Backend::automatic);
     const int repetitions = argc > 1 ? std::atoi(argv[1]) : 9;
     fmt::print("kind,atoms,what,value or wall ms,processor ms\n# {}\n", tiles::instructionSet());
+    if (argc > 2 && std::string_view(argv[2]) == "frames") {
+      bench::measureFrames(58000, repetitions);
+      return 0;
+    }
     if (argc <= 2) {
       for (const int atoms : {58000, 300000, 1000000}) bench::measure(atoms, repetitions);
       bench::measureWidths(58000, repetitions);

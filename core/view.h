@@ -28,6 +28,7 @@ struct View {
   ImageSize size;               ///< of the whole picture
   double nearZ = 1000;          ///< view-space z of the near plane [Å]: nothing above it is seen
   double farZ = -1000;          ///< view-space z of the far plane [Å]: everything drawn lies above it
+  bool operator==(const View&) const = default;
 };
 
 /// Ray with unit direction, in view space; t is measured from origin [Å].

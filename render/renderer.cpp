@@ -22,6 +22,7 @@
 #include "render/post/shade.h"
 #include "render/post/shadow.h"
 #include "render/post/silhouette.h"
+#include "render/post/surface_reader.h"
 #include "render/post/translucent.h"
 #include "render/quadrics.h"
 #include "render/surface_passes.h"
@@ -114,7 +115,6 @@ struct Frame {
   ShadeSettings shade;
   Layers layers;
   ShadowMap shadowMap;  // without depth if there are no shadows
-  TextureLease shadowMapTexture = {};
   bool occlusion = false;
   UnsharpKernel unsharp = {};
   int margin = 0;            // of a tile: how far its pixels' effects look [pixels]
@@ -123,6 +123,16 @@ struct Frame {
 
 // What becomes of the surfaces of a scene.
 enum class Surfaces : std::uint8_t { opaque, apart };
+
+// A shadow map serves as long as the light and what it falls on stay: for a still camera, whatever else of
+// the picture changes.
+struct KeptShadowMap {
+  ShadowMap map;
+  SurfaceSettings surface;
+  bool tiles = false;
+  bool translucent = false;  // surfaces cast no shadow
+  TextureLease texture{nullptr, ReturnToPool{}};
+};
 
 }  // namespace
 
@@ -144,10 +154,14 @@ struct Renderer::Impl {
   LabelColors labelColors;
   LabelBuffers labelBuffers;
   gl::Buffer viewUniforms;
+  SurfaceReader surfaceReader;
+  EffectsChoice effects;
+  KeptShadowMap keptShadowMap;
   std::shared_ptr<const Primitives> primitives = std::make_shared<Primitives>();
   RenderStats stats;
 
-  explicit Impl(const RendererOptions& o) : options(o), shaders(o.shaderDir) {
+  explicit Impl(const RendererOptions& o)
+      : options(o), shaders(o.shaderDir), effects(chooseEffects(o.effectsOnProcessor)) {
     tileQuadrics.setPrimitives(primitives);
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     glDisable(GL_DITHER);
@@ -165,10 +179,11 @@ struct Renderer::Impl {
     if (!viewUniforms.object) viewUniforms = gl::Buffer::updatable(sizeof(f32::ViewBlock));
   }
 
-  void setView(const View& view, const Tile& tile, glm::vec2 sampleShift) {
+  f32::ViewBlock setView(const View& view, const Tile& tile, glm::vec2 sampleShift) {
     const f32::ViewBlock block = makeViewBlock(view, primitives->origin, tile, sampleShift);
     viewUniforms.update(&block);
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, viewUniforms.object.name());
+    return block;
   }
 
   // All that is to be seen, or all but the surfaces, into the channels of a G-buffer. setView() must have
@@ -201,14 +216,17 @@ struct Renderer::Impl {
   // One sample of one tile: every pass of the program is named here.
   GBufferRefs buildFrame(FrameGraph& graph, const Frame& frame, const Tile& tile, glm::vec2 sampleShift,
                          TextureRef target) {
-    setView(frame.view, tile, sampleShift);
+    const f32::ViewBlock block = setView(frame.view, tile, sampleShift);
     const GBufferRefs gbuffer = createGBuffer(graph, tile.width, tile.height);
     addScene(graph, frame.view, tile, sampleShift, gbuffer,
              frame.translucent ? Surfaces::apart : Surfaces::opaque);
+    surfaceReader.begin(block, tile.width, tile.height);
+    SurfaceReader* const reader = effects.processor ? &surfaceReader : nullptr;
     LightRefs light;
     if (frame.shadowMap.depth) {
       light.visibility = addShadow(graph, frame.settings.shadows, frame.shadowMap, shadowUniforms, shaders,
-                                   gbuffer, tile.width, tile.height);
+                                   gbuffer, tile.width, tile.height, reader);
+      if (effects.processor) graph.leaveOut("program of shadow", effects.reason);
     } else {
       graph.leaveOut("pass shadow", "shadows are off");
     }
@@ -224,7 +242,9 @@ struct Renderer::Impl {
     }
     if (frame.settings.lines.any()) {
       light.lines = addSilhouette(graph, frame.settings.lines, silhouetteUniforms, shaders, gbuffer,
-                                  tile.width, tile.height);
+                                  tile.width, tile.height, reader);
+      if (effects.processor && !frame.settings.lines.creases)
+        graph.leaveOut("program of silhouette", effects.reason);
     } else {
       graph.leaveOut("pass silhouette", "outlines are off");
     }
@@ -281,6 +301,7 @@ void Renderer::setPrimitives(std::shared_ptr<const Primitives> primitives) {
   impl_->tileQuadrics.setPrimitives(impl_->primitives);
   impl_->occlusionBuffers.clear();
   impl_->silhouetteUniforms.clearGroups();
+  impl_->keptShadowMap = {};
   impl_->pool.trim();
 }
 
@@ -297,18 +318,33 @@ void Renderer::Impl::drawShadowMap(Frame& frame) {
   const View light =
       makeLightView(frame.view, frame.shade.lighting.key, bounds, pixelFootprint(frame.view, bounds), maxSize,
                     shadows.mode == ShadowMode::soft ? shadows.penumbra : 0);
+  KeptShadowMap& kept = keptShadowMap;
+  if (kept.map.depth != nullptr && kept.map.light == light && kept.surface == frame.settings.surface &&
+      kept.tiles == quadricChoice.tiles && kept.translucent == frame.translucent) {
+    frame.shadowMap = kept.map;
+    stats.omissions.push_back({"pass shadow map", "the light and the scene are those of the picture before"});
+    return;
+  }
   const Tile whole{0, 0, light.size.width, light.size.height};
-  frame.shadowMapTexture = pool.lease("shadow map", {gl::TextureFormat::depth32f, whole.width, whole.height});
+  kept = {};
+  TextureLease texture = pool.lease("shadow map", {gl::TextureFormat::depth32f, whole.width, whole.height});
   setView(light, whole, {0, 0});
   FrameGraph graph(pool);
   GBufferRefs gbuffer;
-  gbuffer.depth = graph.import("shadow map", *frame.shadowMapTexture, Clear::zero);
+  gbuffer.depth = graph.import("shadow map", *texture, Clear::zero);
   addScene(graph, light, whole, {0, 0}, gbuffer, frame.translucent ? Surfaces::apart : Surfaces::opaque,
            "shadow map: ");
   if (frame.translucent) graph.leaveOut("pass shadow map: surface", "what is translucent casts no shadow");
   graph.want(gbuffer.depth);
   execute(graph);
-  frame.shadowMap = {light, frame.shadowMapTexture.get()};
+  frame.shadowMap = {light, texture.get()};
+  if (effects.processor) {
+    std::vector<float> heights(static_cast<std::size_t>(whole.width) *
+                               static_cast<std::size_t>(whole.height));
+    texture->read(whole.width, whole.height, whole.width, heights.data());
+    frame.shadowMap.heights = std::make_shared<const std::vector<float>>(std::move(heights));
+  }
+  kept = {frame.shadowMap, frame.settings.surface, quadricChoice.tiles, frame.translucent, std::move(texture)};
 }
 
 // What the effects of a whole picture share.
@@ -424,6 +460,8 @@ void Renderer::renderPicture(const View& view, const Lighting& lighting, const B
   if (color && settings.shadows.mode != ShadowMode::off && anyOpaque) {
     Stopwatch watch(r.stats.drawMs);
     r.drawShadowMap(frame);
+  } else {
+    r.keptShadowMap = {};
   }
   if (color && settings.occlusion.on && anyOpaque) {
     Stopwatch watch(r.stats.drawMs);

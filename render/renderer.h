@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/hit_image.h"
@@ -23,6 +24,8 @@ struct RendererOptions {
   std::filesystem::path shaderDir;  ///< read shaders from here instead of those in the binary; empty = binary
   bool timePasses = false;          ///< waits for the GPU after every pass to know its time
   int maxTileSize = 0;  ///< largest side of what is drawn at once [pixels]; 0 = what the driver allows
+  /// Whether the processor computes the effects that it can (core/effects/); nothing: if OpenGL runs on it.
+  std::optional<bool> effectsOnProcessor = {};
 };
 
 /// Channels of a HitImage that are wanted.

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <glm/geometric.hpp>
 #include <glm/packing.hpp>
 #include <glm/vec4.hpp>
@@ -24,12 +23,6 @@ constexpr double kGoldenAngle = 2.399963229728653;
 // Where the probes lie; measured: docs/measured/shadow_error.md.
 constexpr int kProbesPerInnerOne = 3;
 constexpr double kInnerRing = 0.45, kOuterRing = 0.92;
-
-// Layout of ShadowUniforms in shaders/post/shadow.frag.
-struct ShadowBlock {
-  glm::vec4 rowX, rowY, rowZ, map, filter;
-  std::array<std::uint32_t, kMaxShadowSamples> offsets;
-};
 
 // Spread over the unit disc: equal areas between the radii, a golden angle between neighbours.
 std::vector<glm::dvec2> discPattern(int count, double turn) {
@@ -64,14 +57,15 @@ void probesFirst(std::vector<glm::dvec2>& points, int probes, double turn) {
 
 void ShadowUniforms::set(const ShadowSettings& settings, const View& camera, const ShadowMap& map, int sample,
                          int sampleCount) {
-  if (!buffer_.object) buffer_ = gl::Buffer::updatable(sizeof(ShadowBlock));
+  if (!buffer_.object) buffer_ = gl::Buffer::updatable(sizeof(effects::ShadowFilter));
   const View& light = map.light;
   const glm::dmat3 rotation = light.rotation * glm::transpose(camera.rotation);
   const glm::dvec3 shift = light.rotation * (camera.pivot - light.pivot);
   const glm::dmat3 rows = glm::transpose(rotation);
   const double perTexel = 1.0 / light.pixelSize;
 
-  ShadowBlock block{};
+  effects::ShadowFilter& block = filter_;
+  block = {};
   block.rowX = glm::vec4(glm::dvec4(rows[0], shift.x) * perTexel + glm::dvec4(0, 0, 0, light.center.x));
   block.rowY = glm::vec4(glm::dvec4(rows[1], shift.y) * perTexel + glm::dvec4(0, 0, 0, light.center.y));
   block.rowZ = glm::vec4(glm::dvec4(rows[2], shift.z - light.farZ));
@@ -92,13 +86,23 @@ void ShadowUniforms::set(const ShadowSettings& settings, const View& camera, con
 
 TextureRef addShadow(FrameGraph& graph, const ShadowSettings& settings, const ShadowMap& map,
                      const ShadowUniforms& uniforms, ShaderLibrary& shaders, const GBufferRefs& gbuffer,
-                     int width, int height) {
-  const TextureRef mapRef = graph.import("shadow map", *map.depth, Clear::none);
+                     int width, int height, SurfaceReader* reader) {
   const TextureRef visibility = graph.create("visibility", {gl::TextureFormat::r16, width, height});
+  const bool soft = settings.mode == ShadowMode::soft;
+  if (reader != nullptr) {
+    graph.addPass(
+        "shadow", {gbuffer.depth, gbuffer.normal}, {{visibility, 0}},
+        [&uniforms, reader, gbuffer, heights = map.heights, visibility, soft](const PassContext& context) {
+          effects::Shares shares;
+          lookUpShadow(reader->read(context, gbuffer), uniforms.filter(), *heights, soft, shares);
+          reader->write(context, visibility, shares);
+        });
+    return visibility;
+  }
+  const TextureRef mapRef = graph.import("shadow map", *map.depth, Clear::none);
   graph.addPass("shadow", {gbuffer.depth, gbuffer.normal, mapRef},
                 {{visibility, 0}, {gbuffer.depth, FrameGraph::kTestedDepth}},
-                [&uniforms, &shaders, gbuffer, mapRef,
-                 soft = settings.mode == ShadowMode::soft](const PassContext& context) {
+                [&uniforms, &shaders, gbuffer, mapRef, soft](const PassContext& context) {
                   glBindTextureUnit(0, context.texture(gbuffer.depth).object.name());
                   glBindTextureUnit(1, context.texture(gbuffer.normal).object.name());
                   glBindTextureUnit(2, context.texture(mapRef).object.name());

@@ -3,10 +3,15 @@
 // SIGGRAPH 1987, doi 10.1145/37402.37435; adaptive number of samples after Sigg et al. 2006, §4. The bias is
 // not a constant: see shaders/post/shadow.frag.
 
+#include <memory>
+#include <vector>
+
+#include "core/effects/shadow_lookup.h"
 #include "core/render_settings.h"
 #include "core/view.h"
 #include "render/frame_graph.h"
 #include "render/gbuffer.h"
+#include "render/post/surface_reader.h"
 #include "render/shader_library.h"
 
 namespace meniscus {
@@ -15,6 +20,7 @@ namespace meniscus {
 struct ShadowMap {
   View light;
   const gl::Texture* depth = nullptr;
+  std::shared_ptr<const std::vector<float>> heights = {};  ///< the same in main memory, for a SurfaceReader
 };
 
 /// A buffer for the pass's uniforms, which outlives the frames.
@@ -25,14 +31,17 @@ class ShadowUniforms {
   void set(const ShadowSettings& settings, const View& camera, const ShadowMap& map, int sample,
            int sampleCount);
   unsigned name() const { return buffer_.object.name(); }
+  const effects::ShadowFilter& filter() const { return filter_; }
 
  private:
   gl::Buffer buffer_;
+  effects::ShadowFilter filter_{};
 };
 
-/// Adds the pass. Returns the share of the key light that arrives, per pixel (0 on the background).
+/// Adds the pass. Returns the share of the key light that arrives, per pixel (0 on the background). reader:
+/// if the processor computes it; must outlive the graph.
 TextureRef addShadow(FrameGraph& graph, const ShadowSettings& settings, const ShadowMap& map,
                      const ShadowUniforms& uniforms, ShaderLibrary& shaders, const GBufferRefs& gbuffer,
-                     int width, int height);
+                     int width, int height, SurfaceReader* reader = nullptr);
 
 }  // namespace meniscus

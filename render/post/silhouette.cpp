@@ -20,11 +20,6 @@ constexpr double kLeastStep = 2;
 // Of the scene's depth range: float32 depths, twice over, and the tangent planes they are measured from.
 constexpr double kRounding = 1e-6;
 
-// Layout of SilhouetteUniforms in shaders/include/outline.glsl.
-struct SilhouetteBlock {
-  glm::vec4 step, crease;
-};
-
 // The largest offset between a pixel of a line and one with its border (coverage() in silhouette_line.frag):
 // along the border, half a pixel off.
 double lineReach(double width) {
@@ -35,16 +30,16 @@ double lineReach(double width) {
 
 void SilhouetteUniforms::set(const SilhouetteSettings& settings, const View& view) {
   MENISCUS_CHECK(settings.width > 0 && settings.width <= kMaxLineWidth);
-  if (!buffer_.object) buffer_ = gl::Buffer::updatable(sizeof(SilhouetteBlock));
+  if (!buffer_.object) buffer_ = gl::Buffer::updatable(sizeof(effects::OutlineBlock));
   const double angle = glm::radians(settings.creaseAngleDeg);
-  const SilhouetteBlock block{
-      glm::vec4(glm::dvec4(kLeastStep, settings.gap, kRounding * (view.nearZ - view.farZ),
-                           settings.silhouettes ? 1.0 : 0.0)),
-      glm::vec4(glm::dvec4(angle, std::cos(angle), settings.width, lineReach(settings.width)))};
-  buffer_.update(&block);
+  block_ = {glm::vec4(glm::dvec4(kLeastStep, settings.gap, kRounding * (view.nearZ - view.farZ),
+                                 settings.silhouettes ? 1.0 : 0.0)),
+            glm::vec4(glm::dvec4(angle, std::cos(angle), settings.width, lineReach(settings.width)))};
+  buffer_.update(&block_);
 }
 
 void SilhouetteUniforms::setGroups(const std::vector<std::uint32_t>& groups) {
+  byId_ = groups;
   if (groups_.object || groups.empty()) return;
   groups_ = gl::Buffer::fromData(groups.data(), groups.size() * sizeof(std::uint32_t));
 }
@@ -56,8 +51,7 @@ int reachOf(const SilhouetteSettings& settings) {
 
 TextureRef addSilhouette(FrameGraph& graph, const SilhouetteSettings& settings,
                          const SilhouetteUniforms& uniforms, ShaderLibrary& shaders,
-                         const GBufferRefs& gbuffer, int width, int height) {
-  const TextureRef borders = graph.create("borders", {gl::TextureFormat::r16, width, height});
+                         const GBufferRefs& gbuffer, int width, int height, SurfaceReader* reader) {
   const TextureRef lines = graph.create("lines", {gl::TextureFormat::r16, width, height});
   ShaderFlags flags;
   if (settings.creases) flags.insert("CREASES");
@@ -67,6 +61,20 @@ TextureRef addSilhouette(FrameGraph& graph, const SilhouetteSettings& settings,
     if (settings.groups != LineGroups::atoms && uniforms.groups().object) flags.insert("GROUPS");
     reads.push_back(gbuffer.id);
   }
+  if (reader != nullptr && !settings.creases) {
+    graph.addPass("silhouette", reads, {{lines, 0}},
+                  [&uniforms, reader, gbuffer, lines, groups = settings.groups](const PassContext& context) {
+                    const bool ids = groups != LineGroups::none;
+                    const effects::OutlineGroups byGroup{ids, groups == LineGroups::atoms
+                                                                  ? std::span<const std::uint32_t>()
+                                                                  : uniforms.groupsById()};
+                    effects::Shares shares;
+                    drawOutlines(reader->read(context, gbuffer, ids), uniforms.block(), byGroup, shares);
+                    reader->write(context, lines, shares);
+                  });
+    return lines;
+  }
+  const TextureRef borders = graph.create("borders", {gl::TextureFormat::r16, width, height});
   const auto bindSurface = [&uniforms, gbuffer](const PassContext& context) {
     glBindTextureUnit(0, context.texture(gbuffer.depth).object.name());
     glBindTextureUnit(1, context.texture(gbuffer.normal).object.name());

@@ -202,8 +202,10 @@ TEST_F(Effects, HaloOnlyDarkens) {
 TEST_F(Effects, OnlyWhatIsAskedForRuns) {
   const auto scene = groupedChain(20, 1);
   const View view = test::viewOf(*scene, kSize);
-  const auto counts = [&](const RenderSettings& settings) {
-    Renderer renderer;
+  const auto counts = [&](const RenderSettings& settings, bool processor = false) {
+    RendererOptions options;
+    options.effectsOnProcessor = processor;
+    Renderer renderer(options);
     renderer.setPrimitives(scene);
     draw(renderer, view, settings, kWhite);
     const RenderStats stats = renderer.stats();
@@ -218,6 +220,7 @@ TEST_F(Effects, OnlyWhatIsAskedForRuns) {
   settings = test::withSamples(1, QuadricMethod::splat);
   settings.lines.silhouettes = true;
   EXPECT_EQ(counts(settings), (Counts{5, 5, 6}));
+  EXPECT_EQ(counts(settings, true), (Counts{4, 3, 5})) << "one pass without a program";
   settings.lines.groups = LineGroups::atoms;
   EXPECT_EQ(counts(settings), (Counts{5, 5, 7})) << "ids, too";
   settings = test::withSamples(1, QuadricMethod::splat);

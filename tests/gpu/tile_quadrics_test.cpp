@@ -56,7 +56,9 @@ TEST_F(TileQuadricsTest, ShowTheSameFromAfar) {
 
 TEST_F(TileQuadricsTest, NeedNoBufferAndNoProgram) {
   const auto scene = test::randomChain(30, 1);
-  Renderer renderer;
+  RendererOptions options;
+  options.effectsOnProcessor = false;
+  Renderer renderer(options);
   renderer.setPrimitives(scene);
   RenderSettings settings = test::withSamples(3, QuadricMethod::tiles);
   settings.shadows.mode = ShadowMode::hard;

@@ -263,7 +263,8 @@ TEST(TileLists, DeepScenesAreCut) {
     return lists;
   }();
   EXPECT_GE(all.entryCount(), whole.entryCount());
-  EXPECT_LE(1000 * all.entryCount(), 1001 * whole.entryCount()) << "bounds found by vectors are a little wider";
+  EXPECT_LE(1000 * all.entryCount(), 1001 * whole.entryCount())
+      << "bounds found by vectors are a little wider";
 }
 
 // From afar, close by and from within: bounds of whole clusters against each ball's own.

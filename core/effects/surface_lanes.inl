@@ -1,0 +1,69 @@
+// Points and normals of vectors of pixels, by the formulas of shaders/shared/projection.glsl (viewPoint) and
+// octahedral.glsl.
+#if defined(MENISCUS_EFFECTS_SURFACE_LANES_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef MENISCUS_EFFECTS_SURFACE_LANES_INL
+#undef MENISCUS_EFFECTS_SURFACE_LANES_INL
+#else
+#define MENISCUS_EFFECTS_SURFACE_LANES_INL
+#endif
+
+#include "core/effects/surface_planes.h"
+#include "core/tiles/lanes.inl"
+
+HWY_BEFORE_NAMESPACE();
+namespace meniscus::effects::HWY_NAMESPACE {
+
+using namespace tiles::HWY_NAMESPACE;
+
+struct Surfaces {
+  Vec3 point, normal;  // view space
+  M there;             // not background
+};
+
+HWY_INLINE V pixelCenters(int x) {
+  return hn::Iota(F(), static_cast<float>(x)) + all(0.5f);
+}
+
+// Of the pixels (x, y), (x + 1, y), ... from `at` on.
+HWY_INLINE Surfaces surfacesAt(const SurfacePlanes& planes, std::size_t at, int x, int y) {
+  const F f;
+  const U u;
+  const f32::ViewBlock& view = planes.view;
+  const V one = all(1.0f), zero = hn::Zero(f);
+  const V value = hn::LoadU(f, planes.depth.data() + at), factor = all(view.depthMap.x);
+  const V px = (pixelCenters(x) + all(view.tile.x - view.center.x)) * all(view.scale.x);
+  const V py = all((static_cast<float>(y) + 0.5f + view.tile.y - view.center.y) * view.scale.x);
+  Surfaces s;
+  s.there = value > zero;
+  if (view.scale.z > 0.5f) {
+    const float toFar = view.depth.x - view.depth.w;
+    const V inverse = one / (hn::Max(value, zero) + factor);
+    const V depth = all(toFar * view.depthMap.x) * inverse;
+    s.point = {px * depth, py * depth, all(view.depth.w) + value * all(toFar) * inverse};
+  } else {
+    s.point = {px, py, all(view.depth.w) + value / factor};
+  }
+  const auto stored = hn::LoadU(u, planes.normal.data() + at);
+  const auto channel = [&](auto bits) {
+    return hn::ConvertTo(f, hn::BitCast(I(), bits)) * all(2.0f / 65535.0f) - one;
+  };
+  const V nx = channel(hn::And(stored, hn::Set(u, 0xFFFFu))), ny = channel(hn::ShiftRight<16>(stored));
+  const V nz = one - hn::Abs(nx) - hn::Abs(ny);
+  const V fold = hn::Max(hn::Neg(nz), zero);
+  const Vec3 n{nx - hn::IfThenElse(nx >= zero, fold, hn::Neg(fold)),
+               ny - hn::IfThenElse(ny >= zero, fold, hn::Neg(fold)), nz};
+  s.normal = scale(n, one / hn::Sqrt(dot(n, n)));
+  return s;
+}
+
+// Stores shares as R16 does, of the first `count` lanes.
+HWY_INLINE void storeShares(V share, std::size_t count, std::uint16_t* out) {
+  alignas(64) std::int32_t stored[kMostLanes] = {};
+  hn::Store(hn::ConvertTo(I(), share * all(65535.0f) + all(0.5f)), I(), stored);
+  for (std::size_t k = 0; k < count; ++k) out[k] = static_cast<std::uint16_t>(stored[k]);
+}
+
+}  // namespace meniscus::effects::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

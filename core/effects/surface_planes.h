@@ -1,0 +1,29 @@
+#pragma once
+// A picture's G-buffer in main memory, as effects read it that the processor computes where OpenGL itself
+// runs on the processor: vectors of pixels there take a fraction of the time that shaders do.
+
+#include <cstdint>
+#include <vector>
+
+#include "core/shared_math.h"
+
+namespace meniscus::effects {
+
+/// Rows from the bottom, in the formats of render/gbuffer.h.
+struct SurfacePlanes {
+  f32::ViewBlock view{};  ///< of the target
+  int width = 0, height = 0;
+  /// Each with room for another kMostLanes beyond the last pixel.
+  std::vector<float> depth;           ///< 0 = background
+  std::vector<std::uint32_t> normal;  ///< octahedral, 16 bits each, x in the lower
+  std::vector<std::uint32_t> id;      ///< empty where no effect asks for it
+
+  std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+};
+
+inline constexpr std::size_t kMostLanes = 16;
+
+/// A share of 0..1 for each pixel, as R16 textures store it.
+using Shares = std::vector<std::uint16_t>;
+
+}  // namespace meniscus::effects
