@@ -236,7 +236,9 @@ struct Renderer::Impl {
       graph.leaveOut("pass occlusion", "ambient occlusion is off");
     }
     if (frame.settings.depthUnsharp.mode != UnsharpMode::off) {
-      light.difference = addDepthUnsharp(graph, frame.unsharp, unsharpUniforms, shaders, gbuffer, tile);
+      light.difference =
+          addDepthUnsharp(graph, frame.unsharp, unsharpUniforms, shaders, gbuffer, tile, reader);
+      if (effects.processor) graph.leaveOut("programs of depth unsharp", effects.reason);
     } else {
       graph.leaveOut("pass depth unsharp", "depth unsharp masking is off");
     }

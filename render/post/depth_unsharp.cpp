@@ -14,15 +14,9 @@ namespace meniscus {
 
 namespace {
 
-constexpr std::size_t kMostTaps = 20;
+constexpr std::size_t kMostTaps = effects::kMostUnsharpTaps;
 constexpr double kBlocksPerSigma = 3;  // error against the exact Gaussian below 0.01 of a step (tests/gpu)
 constexpr double kTruncation = 3;      // standard deviations
-
-// Layout of DepthUnsharpUniforms in shaders/include/depth_unsharp.glsl.
-struct DepthUnsharpBlock {
-  glm::ivec4 grid;
-  std::array<float, kMostTaps> taps;
-};
 
 // Blocks that a range of pixels touches.
 int blockCount(int first, int count, int block) {
@@ -53,8 +47,8 @@ UnsharpKernel unsharpKernel(double sigmaPixels) {
 }
 
 void DepthUnsharpUniforms::set(const UnsharpKernel& kernel, const Tile& tile) {
-  if (!buffer_.object) buffer_ = gl::Buffer::updatable(sizeof(DepthUnsharpBlock));
-  DepthUnsharpBlock block{};
+  if (!buffer_.object) buffer_ = gl::Buffer::updatable(sizeof(effects::DepthUnsharpBlock));
+  effects::DepthUnsharpBlock& block = block_;
   block.grid = {tile.x, tile.y, kernel.block, kernel.taps};
   double sum = 0;
   std::array<double, kMostTaps> taps{};
@@ -75,7 +69,18 @@ int reachOf(const DepthUnsharpSettings& settings, const View& view) {
 
 TextureRef addDepthUnsharp(FrameGraph& graph, const UnsharpKernel& kernel,
                            const DepthUnsharpUniforms& uniforms, ShaderLibrary& shaders,
-                           const GBufferRefs& gbuffer, const Tile& tile) {
+                           const GBufferRefs& gbuffer, const Tile& tile, SurfaceReader* reader) {
+  if (reader != nullptr) {
+    const TextureRef out =
+        graph.create("depth difference", {gl::TextureFormat::r32f, tile.width, tile.height});
+    graph.addPass("depth unsharp", {gbuffer.depth, gbuffer.normal}, {{out, 0}},
+                  [&uniforms, reader, gbuffer, out, tile](const PassContext& context) {
+                    std::vector<float> difference;
+                    unsharpDepth(reader->read(context, gbuffer), uniforms.block(), difference);
+                    context.texture(out).write(tile.width, tile.height, difference.data(), 0, 0);
+                  });
+    return out;
+  }
   const gl::TextureDesc blocks{gl::TextureFormat::rg32f, blockCount(tile.x, tile.width, kernel.block),
                                blockCount(tile.y, tile.height, kernel.block)};
   const TextureRef sums = graph.create("depth blocks", blocks, Clear::none);

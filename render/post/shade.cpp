@@ -55,6 +55,18 @@ glm::vec4 unsharpOf(const ShadeSettings& settings) {
                               settings.surfaceOpacity, 0.0));
 }
 
+// The bound picture becomes its background: what the shader would compute of no light, and a stored colour
+// is exact.
+void clearTo(const ShadeSettings& settings) {
+  glm::vec4 color = backdrop(settings.background);
+  if (settings.encodeSrgb && !settings.background.transparent) {
+    const Rgb stored = settings.background.color;
+    color = glm::vec4(stored >> 16 & 0xFFu, stored >> 8 & 0xFFu, stored & 0xFFu, 255u) / 255.0f;
+  }
+  const float values[] = {color.r, color.g, color.b, color.a};
+  glClearBufferfv(GL_COLOR, 0, values);
+}
+
 }  // namespace
 
 glm::vec4 backdrop(const Background& background) {
@@ -78,15 +90,14 @@ void ShadeUniforms::set(const ShadeSettings& settings) {
 
 void addShade(FrameGraph& graph, const ShadeSettings& settings, const ShadeUniforms& uniforms,
               ShaderLibrary& shaders, const GBufferRefs& gbuffer, const LightRefs& light, TextureRef target) {
-  std::vector<TextureRef> reads{gbuffer.albedo, gbuffer.normal};
+  std::vector<TextureRef> reads{gbuffer.albedo, gbuffer.normal, gbuffer.depth};
   if (light.visibility.valid()) reads.push_back(light.visibility);
   if (light.occlusion.valid()) reads.push_back(light.occlusion);
   if (light.difference.valid()) reads.push_back(light.difference);
   if (light.lines.valid()) reads.push_back(light.lines);
   if (light.labels.valid()) reads.push_back(light.labels);
   const bool fog = settings.fog.strength > 0;
-  if (fog) reads.push_back(gbuffer.depth);
-  graph.addPass("shade", reads, {{target, 0}},
+  graph.addPass("shade", reads, {{target, 0}, {gbuffer.depth, FrameGraph::kTestedDepth}},
                 [settings, fog, &uniforms, &shaders, gbuffer, light](const PassContext& context) {
                   ShaderFlags flags;
                   if (settings.final) flags.insert("FINAL");
@@ -118,8 +129,9 @@ void addShade(FrameGraph& graph, const ShadeSettings& settings, const ShadeUnifo
                   glBindTextureUnit(0, context.texture(gbuffer.albedo).object.name());
                   glBindTextureUnit(1, context.texture(gbuffer.normal).object.name());
                   glBindBufferBase(GL_UNIFORM_BUFFER, 1, uniforms.name());
-                  drawFullscreen(shaders.program("post/fullscreen.vert", "post/shade.frag", flags),
-                                 !settings.final);
+                  if (settings.final) clearTo(settings);
+                  drawOverSurface(shaders.program("post/fullscreen.vert", "post/shade.frag", flags),
+                                  !settings.final);
                 });
 }
 
