@@ -26,6 +26,14 @@ namespace {
 using Molecules = std::vector<std::shared_ptr<const Molecule>>;
 using Objects = std::vector<SceneObject>;
 
+double placedAtomCount(const Molecule& molecule, const std::vector<Placement>& placements) {
+  double atoms = 0;
+  for (const Placement& placement : placements)
+    for (const IndexRange& range : placement.residues)
+      for (std::uint32_t r = range.first; r < range.end(); ++r) atoms += molecule.residues[r].atoms.count;
+  return atoms;
+}
+
 class StructurePictures {
  public:
   StructurePictures(const std::string& file, const RenderOptions& options) : file_(file), options_(options) {}
@@ -33,6 +41,7 @@ class StructurePictures {
 
  private:
   Molecules readMolecules(std::string bytes);
+  void requireMemoryFor(const Molecules& molecules) const;
   bool draws(Representation representation) const;
   bool drawsBonds() const;
   SceneObject placedObject(std::shared_ptr<const Molecule> molecule) const;
@@ -48,9 +57,7 @@ class StructurePictures {
 
 Preparation StructurePictures::make(std::string bytes) {
   const Molecules molecules = readMolecules(std::move(bytes));
-  double atoms = 0;
-  for (const auto& molecule : molecules) atoms += static_cast<double>(molecule->atomCount());
-  requireMemory(file_, atoms, glm::dvec3(options_.replicate));
+  requireMemoryFor(molecules);
   std::vector<Objects> models;
   for (const auto& molecule : molecules) models.push_back(objectsFor(molecule));
   Scene scene;
@@ -124,6 +131,22 @@ SceneObject StructurePictures::placedObject(std::shared_ptr<const Molecule> mole
   if (options_.replicate != glm::ivec3(1))
     object.placements = replicate(*object.molecule, object.placements, options_.replicate);
   return object;
+}
+
+void StructurePictures::requireMemoryFor(const Molecules& molecules) const {
+  double atoms = 0, placed = 0;
+  for (const auto& molecule : molecules) {
+    const auto count = static_cast<double>(molecule->atomCount());
+    atoms += count;
+    placed += options_.assembly.empty()
+                  ? count
+                  : placedAtomCount(*molecule, placeAssembly(*molecule, options_.assembly));
+  }
+  const glm::dvec3 lattice(options_.replicate);
+  placed *= lattice.x * lattice.y * lattice.z;
+  double bytes = bytesPerAtom(options_.representation);
+  for (const ShownApart& shown : options_.shown) bytes = std::max(bytes, bytesPerAtom(shown.representation));
+  requireMemory(file_, atoms, placed, bytes * placed);
 }
 
 bool StructurePictures::draws(Representation representation) const {
@@ -243,16 +266,20 @@ Label labelOf(std::shared_ptr<const Molecule> molecule, const std::vector<Placem
   return {text, bounds.center, bounds.radius};
 }
 
+double bytesPerAtom(Representation representation) {
+  if (representation == Representation::ellipsoids) return 250;
+  if (needsBonds(representation)) return 210;
+  return representation == Representation::surface ? 130 : 120;
+}
+
 // Copies are cheap to ask for, and a system short of memory ends the process without a word.
-void requireMemory(const std::string& file, double atoms, glm::dvec3 copies) {
-  constexpr double kBytesPerAtom = 100;  // measured for spheres alone, 12 million atoms; with bonds it is 190
+void requireMemory(const std::string& file, double atoms, double placed, double bytes) {
   const double available = static_cast<double>(physicalMemoryBytes());
-  const double needed = kBytesPerAtom * atoms * copies.x * copies.y * copies.z;
-  if (available == 0 || needed <= available) return;
+  if (available == 0 || bytes <= available) return;
   throw InputError(
       fmt::format("'{}': {:.0f} copies of {:.0f} atoms take {:.0f} GB of memory, more than there is; draw "
                   "fewer copies or a part (--select)",
-                  file, copies.x * copies.y * copies.z, atoms, needed / 1e9));
+                  file, placed / atoms, atoms, bytes / 1e9));
 }
 
 Preparation structurePictures(const std::string& file, std::string bytes, const RenderOptions& options) {

@@ -50,7 +50,8 @@ Part partOf(const std::string& pass) {
 void measure(const std::string& file, Representation representation, int repetitions,
              const std::string& shaderDir) {
   const BenchScene scene = loadScene({file, representation}, kSize);
-  Renderer renderer(RendererOptions{.shaderDir = shaderDir, .timePasses = true, .maxTileSize = 0});
+  Renderer renderer(RendererOptions{
+      .shaderDir = shaderDir, .timePasses = true, .maxTileSize = 0, .effectsOnProcessor = false});
   renderer.setPrimitives(scene.primitives);
   std::map<std::string, std::vector<double>> ms;
   std::vector<double> post, ratio;

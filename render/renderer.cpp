@@ -346,7 +346,8 @@ void Renderer::Impl::drawShadowMap(Frame& frame) {
     texture->read(whole.width, whole.height, whole.width, heights.data());
     frame.shadowMap.heights = std::make_shared<const std::vector<float>>(std::move(heights));
   }
-  kept = {frame.shadowMap, frame.settings.surface, quadricChoice.tiles, frame.translucent, std::move(texture)};
+  kept = {frame.shadowMap, frame.settings.surface, quadricChoice.tiles, frame.translucent,
+          std::move(texture)};
 }
 
 // What the effects of a whole picture share.

@@ -83,6 +83,9 @@ std::span<const SurfaceMethodInfo> surfaceMethods();
 /// UsageError, naming what there is, on an unknown method, parameter or value.
 const SurfaceMethodInfo& surfaceMethodFor(const SurfaceSettings& settings);
 
+/// Why the method that surfaceMethodFor() gives is taken, for --explain. A context must be current.
+std::string surfaceReason(const SurfaceSettings& settings);
+
 /// The method's parameters, those given in `settings` over the defaults. Throws UsageError as above.
 SurfaceParameters surfaceParametersFor(const SurfaceMethodInfo& method, const SurfaceSettings& settings);
 

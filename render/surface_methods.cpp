@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "render/gl/objects.h"
 #include "render/surface/bezier.h"
 #include "render/surface/lists.h"
 #include "render/surface/mesh.h"
@@ -45,6 +46,15 @@ const SurfaceMethodInfo& surfaceMethodFor(const SurfaceSettings& settings) {
     names += fmt::format(", {}", method.name);
   }
   throw UsageError(fmt::format("--surface-method: there is no '{}'; there are {}", settings.method, names));
+}
+
+std::string surfaceReason(const SurfaceSettings& settings) {
+  if (settings.method != "auto") return "--surface-method " + settings.method;
+  const gl::Device device = gl::queryDevice();
+  const std::string taken = fmt::format("auto takes {}: it is exact and ", surfaceMethodFor(settings).name);
+  return taken + (device.software
+                      ? "by far the fastest where, as here, " + device.name + " runs on the processor"
+                      : "nothing faster has been measured on a GPU such as " + device.name);
 }
 
 SurfaceParameters surfaceParametersFor(const SurfaceMethodInfo& method, const SurfaceSettings& settings) {

@@ -1,5 +1,7 @@
 #include "render/surface_passes.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "core/error.h"
@@ -50,6 +52,12 @@ void SurfacePasses::clear() {
 void SurfacePasses::add(FrameGraph& graph, ShaderLibrary& shaders, const SurfaceTarget& target) {
   if (methods_.empty()) graph.leaveOut("pass " + target.prefix + "surface", "the scene has none");
   for (const auto& method : methods_) method->addPasses(graph, shaders, target);
+  if (methods_.empty()) return;
+  const std::string reason = surfaceReason(settings_);
+  for (const SurfaceMethodInfo& other : surfaceMethods()) {
+    if (other.name != surfaceMethodFor(settings_).name)
+      graph.leaveOut(fmt::format("method {}{}", target.prefix, other.name), reason);
+  }
 }
 
 SurfaceLayerRefs SurfacePasses::addLayers(FrameGraph& graph, ShaderLibrary& shaders, SurfaceTarget target) {

@@ -101,13 +101,14 @@ Preparation StateReader::read() {
         fmt::format("{}: draws nothing{}", state_.root.place().path(),
                     made_.unsupported.empty() ? "" : " that is supported; " + made_.unsupported[0]));
   std::vector<FitSphere> all;
-  double atoms = 0;
+  double atoms = 0, bytes = 0;
   for (const SceneObject& object : picture_.scene.objects) {
     const std::vector<FitSphere> some = fitSpheres(object);
     all.insert(all.end(), some.begin(), some.end());
     atoms += static_cast<double>(some.size());
+    bytes += bytesPerAtom(object.representation) * static_cast<double>(some.size());
   }
-  requireMemory(name_, atoms, glm::dvec3(1.0));
+  requireMemory(name_, atoms, atoms, bytes);
   for (const MvsNode* node : wholeFocus_) camera_.readFocus(*node, all, made_.unsupported);
   picture_.scene.camera = camera_.camera(options, all);
   // What is set for the picture, here or on the command line, has its way.
