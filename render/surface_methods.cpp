@@ -50,6 +50,7 @@ const SurfaceMethodInfo& surfaceMethodFor(const SurfaceSettings& settings) {
 
 std::string surfaceReason(const SurfaceSettings& settings) {
   if (settings.method != "auto") return "--surface-method " + settings.method;
+  if (settings.translucent()) return "auto takes lists: it draws the layers of translucent surfaces";
   const gl::Device device = gl::queryDevice();
   const std::string taken = fmt::format("auto takes {}: it is exact and ", surfaceMethodFor(settings).name);
   return taken + (device.software
