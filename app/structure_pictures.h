@@ -17,7 +17,8 @@ SceneObject objectAsAsked(const RenderOptions& options, std::shared_ptr<const Mo
 Label labelOf(std::shared_ptr<const Molecule> molecule, const std::vector<Placement>& placements,
               std::vector<std::uint32_t> atoms, const std::string& text);
 
-/// What an atom takes of memory at most, a picture aside [bytes]; measured on 12 to 16 million atoms.
+/// What an atom takes of memory at most, a picture aside [bytes]. Measured for spheres on 16 million atoms;
+/// the others add what their primitives take.
 double bytesPerAtom(Representation representation);
 
 /// Throws InputError naming `file` if `placed` atoms, copies of `atoms`, which take `bytes` all together, do

@@ -129,9 +129,13 @@ void addShade(FrameGraph& graph, const ShadeSettings& settings, const ShadeUnifo
                   glBindTextureUnit(0, context.texture(gbuffer.albedo).object.name());
                   glBindTextureUnit(1, context.texture(gbuffer.normal).object.name());
                   glBindBufferBase(GL_UNIFORM_BUFFER, 1, uniforms.name());
+                  const unsigned program = shaders.program("post/fullscreen.vert", "post/shade.frag", flags);
+                  if (light.labels.valid()) {  // on the background, too
+                    drawFullscreen(program, !settings.final);
+                    return;
+                  }
                   if (settings.final) clearTo(settings);
-                  drawOverSurface(shaders.program("post/fullscreen.vert", "post/shade.frag", flags),
-                                  !settings.final);
+                  drawOverSurface(program, !settings.final);
                 });
 }
 

@@ -1,7 +1,8 @@
 #version 450 core
 // flags: FINAL ENCODE_SRGB SHADOW OCCLUSION UNSHARP FOG LINES LABELS
 // Deferred shading. One sample is written as the picture (FINAL); of several, each is added to the sum that
-// post/resolve.frag divides.
+// post/resolve.frag divides. Drawn over the surface only, unless there are labels: the background's colour,
+// or nothing, is there already.
 #include "include/view.glsl"
 #include "shared/octahedral.glsl"
 #include "include/color.glsl"

@@ -29,8 +29,8 @@ TEST(OutputPattern, fillsInStemAndModel) {
   const OutputPattern pattern("out/{stem}-{model}.png");
   EXPECT_TRUE(pattern.namesStem());
   EXPECT_TRUE(pattern.namesModel());
-  EXPECT_EQ(pattern.nameFor("x/1l2y.pdb.gz", {38}), "out/1l2y-38.png");
-  EXPECT_EQ(OutputPattern("{model}/{stem}{stem}.png").nameFor("a.pdb", {-2}), "-2/aa.png");
+  EXPECT_EQ(pattern.nameFor("x/1l2y.pdb.gz", {38, "", 0}), "out/1l2y-38.png");
+  EXPECT_EQ(OutputPattern("{model}/{stem}{stem}.png").nameFor("a.pdb", {-2, "", 0}), "-2/aa.png");
 }
 
 TEST(OutputPattern, takesPlainNamesAndDoubledBraces) {
