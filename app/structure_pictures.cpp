@@ -213,6 +213,11 @@ Camera StructurePictures::cameraFor(const std::vector<Objects>& models) const {
       spheres.insert(spheres.end(), some.begin(), some.end());
     }
   }
+  if (spheres.empty() && options_.focus.empty())
+    throw InputError(fmt::format(
+        "'{}': has nothing that its representation draws; cartoon, backbone and putty are for chains "
+        "of protein or nucleic acid, others for any atoms",
+        file_));
   if (spheres.empty())
     throw InputError(
         fmt::format("'{}': --focus '{}' matches none of the atoms that are drawn; see meniscus info", file_,

@@ -1,6 +1,7 @@
 // CID selections: the syntax is gemmi's (gemmi.readthedocs.io, "Selections"), evaluated on our arrays.
 #include <fmt/format.h>
 
+#include <climits>
 #include <exception>
 #define USE_STD_SNPRINTF  // select.hpp asks for stb_sprintf otherwise, which is not needed to evaluate
                           // selections
@@ -14,7 +15,14 @@ namespace {
 
 gemmi::Selection parse(const std::string& cid) {
   try {
-    return gemmi::Selection(cid);
+    gemmi::Selection selection(cid);
+    // "48" is that residue alone, as in MMDB; gemmi 0.5 takes it for "48-", all from there on. Where there is
+    // a dash it reads an end, without an insertion code if that is open.
+    const bool starts = selection.from_seqid.seqnum != INT_MIN;
+    const bool ends = selection.to_seqid.seqnum != INT_MAX || selection.to_seqid.icode != '*' ||
+                      cid.find("-*") != std::string::npos;
+    if (starts && !ends) selection.to_seqid = selection.from_seqid;
+    return selection;
   } catch (const std::exception&) {
     throw UsageError(fmt::format(
         "'{}' is no selection: write it as /model/chains/residues/atoms, for example //A/10-20/CA[C]", cid));

@@ -40,7 +40,7 @@ TEST_F(BadCommand, namesAnUnknownOption) {
 }
 
 TEST_F(BadCommand, givesAnOptionAnUnknownValue) {
-  const std::array<std::array<const char*, 3>, 27> cases{{{"--representation", "cartoon", "licorice"},
+  const std::array<std::array<const char*, 3>, 27> cases{{{"--representation", "ribbons", "licorice"},
                                                           {"--color", "mauve", "rainbow"},
                                                           {"--carbons", "green", "chain"},
                                                           {"--radii", "tsai", "alvarez"},
@@ -97,6 +97,13 @@ class BadInput : public CliTest {
     refused(name);
   }
 };
+
+TEST_F(BadInput, hasNoChainToDrawAsACartoon) {
+  expectError(
+      run({"render", "-q", molecule("c60.pdb"), "-o", "out.png", "--representation", "cartoon"}, kNoGraphics),
+      ExitCode::badInput, {"c60.pdb", "cartoon", "chains"});
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out.png"));
+}
 
 TEST_F(BadInput, isMissing) {
   refused("missing.pdb");

@@ -74,6 +74,17 @@ TEST(Selection, gemmiSyntax) {
   EXPECT_THROW(selectAtoms(m, "//A/x-y/["), UsageError);
 }
 
+TEST(Selection, aNumberAloneIsThatResidue) {
+  const Molecule ubiquitin =
+      test::readFile(std::filesystem::path(MENISCUS_MOLECULES) / "1ubq.pdb").molecule();
+  EXPECT_EQ(selectAtoms(ubiquitin, "//A/48").size(), 9u);
+  EXPECT_EQ(selectAtoms(ubiquitin, "//A/48/CA").size(), 1u);
+  EXPECT_EQ(selectAtoms(ubiquitin, "//A/48-48").size(), 9u);
+  EXPECT_EQ(selectAtoms(ubiquitin, "//A/70-/CA").size(), 7u);
+  EXPECT_EQ(selectAtoms(ubiquitin, "//A/70-*/CA").size(), 7u);
+  EXPECT_EQ(selectAtoms(ubiquitin, "//A/-3/CA").size(), 3u);
+}
+
 TEST(Selection, keepsBondsAndAssembliesConsistent) {
   StructureOptions options;
   options.select = "//A/2";
