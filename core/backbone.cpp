@@ -56,10 +56,6 @@ bool areBound(const Molecule& m, const BackboneResidue& a, const BackboneResidue
   return within(a.trace, b.trace, nucleic ? kFarthestC4 : kFarthestCa);
 }
 
-bool samePlace(const Residue& a, const Residue& b) {
-  return a.chain == b.chain && a.number == b.number && a.insertionCode == b.insertionCode;
-}
-
 }  // namespace
 
 std::vector<Backbone> findBackbones(const Molecule& molecule) {

@@ -160,9 +160,6 @@ void BondFinder::addTemplateBonds(const Residue& residue) {
 
 /// Peptide and phosphodiester links from each residue to those of the next number.
 void BondFinder::addLinks(const Chain& chain) {
-  const auto samePlace = [](const Residue& a, const Residue& b) {
-    return a.number == b.number && a.insertionCode == b.insertionCode;
-  };
   for (std::uint32_t i = chain.residues.first; i < chain.residues.end(); ++i) {
     const Residue& from = m_.residues[i];
     if (from.kind != ResidueKind::aminoAcid && from.kind != ResidueKind::nucleotide) continue;

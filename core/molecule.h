@@ -57,6 +57,11 @@ struct Residue {
   SecondaryStructure secondary = SecondaryStructure::coil;  ///< as the file says, see hasSecondary
 };
 
+/// Whether two residues are alternatives of one place in their chain (microheterogeneity).
+inline bool samePlace(const Residue& a, const Residue& b) {
+  return a.chain == b.chain && a.number == b.number && a.insertionCode == b.insertionCode;
+}
+
 struct Chain {
   std::string name;  ///< author chain id (auth_asym_id); may be empty (blank) or many letters
   IndexRange residues;

@@ -283,8 +283,8 @@ BoundingSphere Primitives::bounds() const {
 std::vector<FitSphere> fitSpheres(const SceneObject& object, const std::vector<std::uint32_t>& atoms) {
   std::vector<FitSphere> out;
   const Ellipsoids ellipsoids(object);
-  const BackboneObject backbone(object);
   const bool ribbons = followsBackbone(object.representation);
+  const std::vector<double> reach = ribbons ? backboneReach(object) : std::vector<double>();
   std::vector<bool> chosen;
   if (!atoms.empty()) {
     chosen.resize(object.molecule->atomCount());
@@ -293,7 +293,7 @@ std::vector<FitSphere> fitSpheres(const SceneObject& object, const std::vector<s
   for (const Placement& placement : object.placements) {
     forEachAtom(object, placement, [&](std::uint32_t atom) {
       if (!chosen.empty() && !chosen[atom]) return;
-      const double radius = ribbons ? backbone.reach(atom) : fitRadius(object, ellipsoids, atom);
+      const double radius = ribbons ? reach[atom] : fitRadius(object, ellipsoids, atom);
       if (radius >= 0) out.push_back({placed(placement, object.molecule->positions[atom]), radius});
     });
   }

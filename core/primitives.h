@@ -51,10 +51,10 @@ struct Primitives {
   std::vector<SpherePrimitive> filling;  ///< balls within the mesh, which stand for it in ambient occlusion
   std::vector<std::uint32_t> groups;     ///< by id; [0] = 0 and nobody else's; empty = not asked for
 
-  bool empty() const {
-    return spheres.empty() && cylinders.empty() && ellipsoids.empty() && surfaces.empty() && mesh.empty();
-  }
-  bool onlySurfaces() const { return spheres.empty() && cylinders.empty() && ellipsoids.empty(); }
+  bool noQuadrics() const { return spheres.empty() && cylinders.empty() && ellipsoids.empty(); }
+  bool empty() const { return noQuadrics() && surfaces.empty() && mesh.empty(); }
+  /// Nothing beside the surfaces.
+  bool onlySurfaces() const { return noQuadrics() && mesh.empty(); }
   BoundingSphere bounds() const;  ///< world space
 };
 

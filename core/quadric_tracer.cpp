@@ -273,11 +273,9 @@ ReferenceImage traceQuadrics(const Primitives& primitives, const View& view,
 }
 
 ReferenceImage traceScene(const Primitives& primitives, const View& view, const ReferenceOptions& options) {
-  const bool quadrics =
-      !primitives.spheres.empty() || !primitives.cylinders.empty() || !primitives.ellipsoids.empty();
   if (primitives.surfaces.empty()) return traceQuadrics(primitives, view, options);
   ReferenceImage image = traceReference(primitives.surfaces, primitives.origin, view, options);
-  if (!quadrics) return image;
+  if (primitives.noQuadrics()) return image;
   const ReferenceImage other = traceQuadrics(primitives, view, options);
   for (std::size_t i = 0; i < image.distance.size(); ++i) {
     const bool nearer = other.distance[i] < image.distance[i];

@@ -416,9 +416,9 @@ std::vector<double> puttyRadii(const Molecule& molecule, const std::vector<Backb
 
 }  // namespace
 
-Ribbon makeRibbon(const Molecule& molecule, const std::vector<bool>& chosen, RibbonStyle style, double size) {
+Ribbon makeRibbon(const Molecule& molecule, const std::vector<Backbone>& backbones,
+                  const std::vector<bool>& chosen, RibbonStyle style, double size) {
   Ribbon ribbon;
-  const std::vector<Backbone> backbones = findBackbones(molecule);
   const std::vector<SecondaryStructure> secondary =
       style == RibbonStyle::cartoon ? secondaryOf(molecule, backbones) : std::vector<SecondaryStructure>();
   const std::vector<double> radii =

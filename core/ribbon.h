@@ -8,6 +8,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "core/backbone.h"
 #include "core/molecule.h"
 
 namespace meniscus {
@@ -47,6 +48,7 @@ struct Ribbon {
 
 /// The ribbons of the residues whose trace atoms (core/backbone.h) are chosen: `chosen` by atom, empty = all.
 /// What is not chosen still bends its neighbours. `size` scales all widths.
-Ribbon makeRibbon(const Molecule& molecule, const std::vector<bool>& chosen, RibbonStyle style, double size);
+Ribbon makeRibbon(const Molecule& molecule, const std::vector<Backbone>& backbones,
+                  const std::vector<bool>& chosen, RibbonStyle style, double size);
 
 }  // namespace meniscus

@@ -25,6 +25,14 @@ std::vector<bool> atomsOf(const Molecule& molecule, const Placement& placement) 
   return atoms;
 }
 
+/// By atom: whether the object draws it; empty = all.
+std::vector<bool> chosenAtoms(const SceneObject& object) {
+  if (object.atoms.empty()) return {};
+  std::vector<bool> chosen(object.molecule->atomCount());
+  for (const std::uint32_t atom : object.atoms) chosen[atom] = true;
+  return chosen;
+}
+
 bool holds(const std::vector<bool>& atoms, std::uint32_t atom) {
   return atoms.empty() || atoms[atom];
 }
@@ -36,27 +44,28 @@ bool followsBackbone(Representation representation) {
          representation == Representation::putty;
 }
 
-BackboneObject::BackboneObject(const SceneObject& object) : object_(object) {
-  if (!followsBackbone(object.representation)) return;
-  const Molecule& molecule = *object.molecule;
-  if (!object.atoms.empty()) {
-    chosen_.resize(molecule.atomCount());
-    for (const std::uint32_t atom : object.atoms) chosen_[atom] = true;
-  }
-  backbones_ = findBackbones(molecule);
-  reach_.assign(molecule.atomCount(), -1.0);
-  const bool trace = object.representation == Representation::backbone;
-  for (const Backbone& backbone : backbones_) {
+std::vector<double> backboneReach(const SceneObject& object) {
+  const std::vector<bool> chosen = chosenAtoms(object);
+  std::vector<double> reach(object.molecule->atomCount(), -1.0);
+  const double trace = object.representation == Representation::backbone ? kTraceRadius : kRibbonReach;
+  for (const Backbone& backbone : findBackbones(*object.molecule)) {
     for (const BackboneResidue& b : backbone.residues) {
-      if (!holds(chosen_, b.trace)) continue;
-      reach_[b.trace] = (trace ? kTraceRadius : kRibbonReach) * object.ribbonScale;
+      if (!holds(chosen, b.trace)) continue;
+      reach[b.trace] = trace * object.ribbonScale;
       if (b.base != kNoAtom && object.representation == Representation::cartoon)
-        reach_[b.base] = kTraceRadius * object.ribbonScale;
+        reach[b.base] = kTraceRadius * object.ribbonScale;
     }
   }
-  if (trace) return;
+  return reach;
+}
+
+BackboneObject::BackboneObject(const SceneObject& object) : object_(object) {
+  if (!followsBackbone(object.representation)) return;
+  chosen_ = chosenAtoms(object);
+  backbones_ = findBackbones(*object.molecule);
+  if (object.representation == Representation::backbone) return;
   ribbon_ =
-      makeRibbon(molecule, chosen_,
+      makeRibbon(*object.molecule, backbones_, chosen_,
                  object.representation == Representation::putty ? RibbonStyle::putty : RibbonStyle::cartoon,
                  object.ribbonScale);
 }
@@ -93,13 +102,19 @@ void BackboneObject::addTrace(const Placement& placement, const std::vector<bool
 void BackboneObject::addRibbon(const Placement& placement, const std::vector<bool>& inPlace,
                                const std::vector<Rgb>& colors, std::uint32_t firstId, Primitives& out) const {
   const glm::dmat3 turn(placement.transform);
-  const auto first = static_cast<std::uint32_t>(out.mesh.vertices.size());
-  for (const Ribbon::Vertex& v : ribbon_.vertices)
+  constexpr std::uint32_t kNotPlaced = 0xFFFFFFFFu;
+  std::vector<std::uint32_t> place(ribbon_.vertices.size(), kNotPlaced);
+  const auto vertex = [&](std::uint32_t i) {
+    if (place[i] != kNotPlaced) return place[i];
+    const Ribbon::Vertex& v = ribbon_.vertices[i];
     out.mesh.vertices.push_back(
         {placed(placement, v.position, out.origin), glm::vec3(glm::normalize(turn * v.normal))});
+    return place[i] = static_cast<std::uint32_t>(out.mesh.vertices.size() - 1);
+  };
   for (const Ribbon::Triangle& t : ribbon_.triangles) {
     if (!holds(inPlace, t.atom)) continue;
-    out.mesh.triangles.push_back({first + t.a, first + t.b, first + t.c});
+    const std::uint32_t a = vertex(t.a), b = vertex(t.b), c = vertex(t.c);
+    out.mesh.triangles.push_back({a, b, c});
     out.mesh.surfaces.push_back({colors[t.atom], firstId + t.atom});
   }
   const auto ball = [&](const Ribbon::Ball& b) {

@@ -12,6 +12,10 @@ namespace meniscus {
 /// Whether a representation is drawn from backbones, not atom by atom.
 bool followsBackbone(Representation representation);
 
+/// By atom, of an object that follows the backbone: the radius about a trace atom that holds what is drawn
+/// there [Å]; negative for all other atoms.
+std::vector<double> backboneReach(const SceneObject& object);
+
 class BackboneObject {
  public:
   /// Nothing if the representation does not follow the backbone. `object` must outlive it.
@@ -20,8 +24,6 @@ class BackboneObject {
   /// Adds one placement; `colors` by atom, `firstId` the id of the molecule's first atom.
   void addPlacement(const Placement& placement, const std::vector<Rgb>& colors, std::uint32_t firstId,
                     Primitives& out) const;
-  /// Radius about a trace atom that holds what is drawn there [Å]; negative for all other atoms.
-  double reach(std::uint32_t atom) const { return reach_[atom]; }
 
  private:
   void addRibbon(const Placement& placement, const std::vector<bool>& placed, const std::vector<Rgb>& colors,
@@ -31,7 +33,6 @@ class BackboneObject {
 
   const SceneObject& object_;
   std::vector<bool> chosen_;  // by atom; empty = all
-  std::vector<double> reach_;
   std::vector<Backbone> backbones_;
   Ribbon ribbon_;
 };

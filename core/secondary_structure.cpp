@@ -174,7 +174,7 @@ void Pattern::markStrands(std::vector<SecondaryStructure>& out) const {
         const Found& b = bridges[k];
         const std::ptrdiff_t across = a.type == Bridge::parallel ? b.j - a.j : a.j - b.j;
         if (b.type != a.type || across < 1 || !sameRun(std::min(a.j, b.j), std::max(a.j, b.j))) continue;
-        if (!((step <= 2 && across <= 5) || (step <= 5 && across <= 2))) continue;
+        if (!((step <= 2 && across <= 5) || across <= 2)) continue;
         mark(a.i, b.i);
         mark(a.j, b.j);
       }

@@ -2,9 +2,11 @@
 
 #include "render/triangles.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
+#include <string_view>
 
 #include "render/renderer.h"
 #include "tests/support/gl_fixture.h"
@@ -106,6 +108,29 @@ TEST_F(TrianglesTest, aCameraInsideSeesTheInnerSide) {
     ASSERT_GT(hits.distance[i], 1.9f);
     ASSERT_LT(hits.distance[i], 3.01f);
   }
+}
+
+TEST_F(TrianglesTest, castShadowsBesideASurfaceThatIsTranslucent) {
+  const auto scene = std::make_shared<Primitives>();
+  addBall(scene->mesh, {0, 0, 0}, 2, 0xC0C0C0, 1);
+  MetaballField field;
+  field.balls = {{{0, 0, 0}, 6, 1, 0x00FF00, 2}};
+  scene->surfaces = {field};
+  RenderSettings settings = test::withSamples(1);
+  settings.shadows.mode = ShadowMode::hard;
+  settings.occlusion.on = true;
+  settings.surface.opacity = 0.5;
+  Renderer renderer;
+  renderer.setPrimitives(scene);
+  draw(renderer, test::viewOf(*scene, kSize), settings);
+  const RenderStats stats = renderer.stats();
+  const auto ran = [&](std::string_view name) {
+    return std::any_of(stats.passes.begin(), stats.passes.end(),
+                       [&](const PassStats& pass) { return pass.name == name; });
+  };
+  EXPECT_TRUE(ran("shadow map: triangles"));
+  EXPECT_TRUE(ran("shadow"));
+  EXPECT_TRUE(ran("occlusion"));
 }
 
 // Hard shadows are the strictest: a convex mesh alone is lit as if there were none.

@@ -10,15 +10,20 @@
 #include <map>
 #include <tuple>
 
+#include "core/assembly.h"
 #include "core/primitives.h"
-#include "io/structure_reader.h"
+#include "tests/unit/structure_files.h"
 
 namespace meniscus::test {
 namespace {
 
 Molecule readMolecule(const std::string& name) {
-  Logger logger;
-  return readStructure(std::string(MENISCUS_MOLECULES) + "/" + name, {}, logger).models.at(0);
+  return readFile(std::filesystem::path(MENISCUS_MOLECULES) / name).molecule();
+}
+
+Ribbon ribbonOf(const Molecule& molecule, const std::vector<bool>& chosen = {},
+                RibbonStyle style = RibbonStyle::cartoon) {
+  return makeRibbon(molecule, findBackbones(molecule), chosen, style, 1);
 }
 
 /// Every edge, by the places of its ends, is met as often in one direction as in the other: no crack
@@ -70,7 +75,7 @@ TEST(Ribbon, isClosedAndItsNormalsPointOutward) {
     SCOPED_TRACE(name);
     const Molecule molecule = readMolecule(name);
     for (const RibbonStyle style : {RibbonStyle::cartoon, RibbonStyle::putty}) {
-      const Ribbon ribbon = makeRibbon(molecule, {}, style, 1);
+      const Ribbon ribbon = ribbonOf(molecule, {}, style);
       ASSERT_GT(ribbon.triangles.size(), 1000u);
       expectClosed(ribbon);
       EXPECT_GT(volumeOf(ribbon), 40);
@@ -85,15 +90,15 @@ TEST(Ribbon, partsAreClosedTooAndTheWholeBendsThem) {
   std::vector<bool> chosen(molecule.atomCount());
   for (std::uint32_t a = molecule.residues[20].atoms.first; a < molecule.residues[45].atoms.end(); ++a)
     chosen[a] = true;
-  const Ribbon part = makeRibbon(molecule, chosen, RibbonStyle::cartoon, 1);
+  const Ribbon part = ribbonOf(molecule, chosen);
   expectClosed(part);
-  EXPECT_LT(part.triangles.size(), makeRibbon(molecule, {}, RibbonStyle::cartoon, 1).triangles.size());
+  EXPECT_LT(part.triangles.size(), ribbonOf(molecule).triangles.size());
   for (const Ribbon::Triangle& t : part.triangles) EXPECT_TRUE(chosen[t.atom]);
 }
 
 TEST(Ribbon, passesItsTraceAtomsAndFillingLiesWithin) {
   const Molecule molecule = readMolecule("2hhb.pdb.gz");  // helices and coils only: the path is not smoothed
-  const Ribbon ribbon = makeRibbon(molecule, {}, RibbonStyle::cartoon, 1);
+  const Ribbon ribbon = ribbonOf(molecule);
   std::vector<double> nearest(molecule.atomCount(), 1e9);
   for (const Ribbon::Ball& ball : ribbon.filling)
     nearest[ball.atom] =
@@ -146,6 +151,24 @@ TEST(Ribbon, becomesPrimitivesOfEveryPlacement) {
   const Primitives trace = buildPrimitives(scene);
   EXPECT_EQ(trace.spheres.size(), 12u);
   EXPECT_EQ(trace.cylinders.size(), 10u);
+}
+
+// What a placement leaves out neither takes memory nor widens the shadow map.
+TEST(Ribbon, ofAPartOfTheMoleculeIsNoLargerThanThat) {
+  SceneObject object;
+  const auto molecule = std::make_shared<const Molecule>(readMolecule("2hhb.pdb.gz"));
+  object.molecule = molecule;
+  object.representation = Representation::cartoon;
+  object.placements = {{glm::dmat4(1.0), {molecule->chains[0].residues}}};
+  Scene scene;
+  scene.objects = {object};
+  const Primitives part = buildPrimitives(scene);
+  ASSERT_FALSE(part.mesh.empty());
+  std::vector<bool> used(part.mesh.vertices.size());
+  for (const TriangleCorners& t : part.mesh.triangles) used[t.a] = used[t.b] = used[t.c] = true;
+  EXPECT_EQ(std::count(used.begin(), used.end(), false), 0);
+  scene.objects[0].placements = placeOnce(*molecule);
+  EXPECT_LT(part.bounds().radius, 0.8 * buildPrimitives(scene).bounds().radius);
 }
 
 }  // namespace

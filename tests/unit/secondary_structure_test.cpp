@@ -7,7 +7,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "core/ribbon.h"
-#include "io/structure_reader.h"
+#include "tests/unit/structure_files.h"
 
 namespace meniscus::test {
 namespace {
@@ -15,8 +15,7 @@ namespace {
 Molecule readMolecule(const std::string& name, Altlocs altlocs = Altlocs::all) {
   StructureOptions options;
   options.altlocs = altlocs;
-  Logger logger;
-  return readStructure(std::string(MENISCUS_MOLECULES) + "/" + name, options, logger).models.at(0);
+  return readFile(std::filesystem::path(MENISCUS_MOLECULES) / name, options).molecule();
 }
 
 char letter(SecondaryStructure s) {
@@ -100,9 +99,10 @@ TEST(Backbones, endAtGapsAndTakeOneAlternateLocation) {
   for (const Backbone& backbone : findBackbones(peptide))
     for (const BackboneResidue& b : backbone.residues)
       EXPECT_TRUE(peptide.altlocs[b.trace] == ' ' || peptide.altlocs[b.trace] == 'A');
-  EXPECT_EQ(
-      makeRibbon(peptide, {}, RibbonStyle::cartoon, 1).vertices.size(),
-      makeRibbon(readMolecule("3al1.pdb.gz", Altlocs::first), {}, RibbonStyle::cartoon, 1).vertices.size());
+  const auto vertexCount = [](const Molecule& m) {
+    return makeRibbon(m, findBackbones(m), {}, RibbonStyle::cartoon, 1).vertices.size();
+  };
+  EXPECT_EQ(vertexCount(peptide), vertexCount(readMolecule("3al1.pdb.gz", Altlocs::first)));
 }
 
 TEST(Backbones, runThroughNucleicAcidsWithTheirBases) {
