@@ -7,15 +7,14 @@
 #include <system_error>
 
 #include "core/error.h"
+#include "core/text.h"
 #include "io/image_files.h"
 #include "io/output_file.h"
 
 namespace meniscus {
 
 ImageType imageTypeOf(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  const std::string extension = lowerCase(path.extension().string());
   if (extension == ".png") return ImageType::png;
   if (extension == ".exr") return ImageType::exr;
   std::error_code error;

@@ -15,6 +15,8 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/srgb.h"
+#include "core/text.h"
 #include "io/output_file.h"
 
 namespace meniscus {
@@ -93,11 +95,8 @@ void writePly(OutputFile& file, const std::vector<SurfaceMesh>& surfaces, const 
   flush(0);
 }
 
-// sRGB (IEC 61966-2-1) to linear light.
 std::uint16_t linear16(std::uint32_t byte) {
-  const double s = byte / 255.0;
-  const double light = s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
-  return static_cast<std::uint16_t>(light * 65535 + 0.5);
+  return static_cast<std::uint16_t>(linearFromSrgb(byte / 255.0) * 65535 + 0.5);
 }
 
 // The binary part of a glTF file as it grows.
@@ -241,9 +240,7 @@ void writeGlb(OutputFile& file, const std::vector<SurfaceMesh>& surfaces, const 
 }
 
 bool endsIn(const std::filesystem::path& path, const char* extension) {
-  std::string ending = path.extension().string();
-  for (char& c : ending) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return ending == extension;
+  return lowerCase(path.extension().string()) == extension;
 }
 
 }  // namespace

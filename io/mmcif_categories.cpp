@@ -5,18 +5,13 @@
 #include <map>
 #include <utility>
 
+#include "core/text.h"
 #include "io/cif_values.h"
 
 namespace meniscus {
 namespace {
 
 using gemmi::cif::Table;
-
-std::string toLower(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return lower;
-}
 
 std::string_view valueOf(const Table::Row& row, std::size_t column) {
   return row.has(column) ? cifText(row[column]) : std::string_view();
@@ -70,7 +65,7 @@ std::map<std::string, glm::dmat4> readOperators(gemmi::cif::Block& block, Odditi
 }  // namespace
 
 std::uint8_t bondOrder(std::string_view word) {
-  const std::string lower = toLower(word.substr(0, 4));
+  const std::string lower = lowerCase(word.substr(0, 4));
   if (lower == "doub") return 2;
   if (lower == "trip") return 3;
   return lower == "arom" || lower == "delo" ? 4 : 1;
@@ -90,7 +85,7 @@ std::vector<NamedBond> readConnections(gemmi::cif::Block& block, bool labelIds) 
     tags.push_back("?pdbx_" + partner + "_label_alt_id");
   }
   for (const Table::Row row : block.find("_struct_conn.", tags)) {
-    const std::string type = toLower(valueOf(row, kType));
+    const std::string type = lowerCase(valueOf(row, kType));
     if (!startsWith(type, "covale") && !startsWith(type, "disulf") && !startsWith(type, "metal")) continue;
     if (valueOf(row, kSymmetry1) != valueOf(row, kSymmetry2)) continue;
     NamedBond bond;
@@ -151,7 +146,7 @@ std::vector<SecondaryRange> readSecondary(gemmi::cif::Block& block, bool labelId
     for (const Table::Row row :
          block.find(category, {type, "beg" + chain, "beg" + number, "end" + chain, "end" + number,
                                "?pdbx_beg_PDB_ins_code", "?pdbx_end_PDB_ins_code"})) {
-      const std::string kind = toLower(cifText(row[0]));
+      const std::string kind = lowerCase(cifText(row[0]));
       const bool sheet = type[0] == 's' || startsWith(kind, "strn");
       if (!sheet && !startsWith(kind, "helx")) continue;
       const auto first = cifInteger(cifText(row[2])), last = cifInteger(cifText(row[4]));
@@ -197,13 +192,13 @@ bool saysPredicted(gemmi::cif::Block& block) {
   if (block.has_tag("_ma_qa_metric.id") || block.has_tag("_ma_qa_metric_local.metric_value")) return true;
   for (const std::string& method : block.find_values("_exptl.method")) {
     const std::string_view text = cifText(method);
-    if (!text.empty() && toLower(text) != "theoretical model") return false;
+    if (!text.empty() && lowerCase(text) != "theoretical model") return false;
   }
   for (const std::string& id : block.find_values("_entry.id")) {
     if (startsWith(cifText(id), "AF-")) return true;
   }
   for (const std::string& raw : block.find_values("_software.name")) {
-    const std::string name = toLower(cifText(raw));
+    const std::string name = lowerCase(cifText(raw));
     for (const std::string_view program : {"alphafold", "esmfold", "colabfold", "rosettafold", "omegafold"}) {
       if (name.find(program) != std::string::npos) return true;
     }

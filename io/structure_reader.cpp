@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/text.h"
 #include "io/binary_cif.h"
 #include "io/file_bytes.h"
 #include "io/format_readers.h"
@@ -28,9 +29,7 @@ std::string stemOf(std::filesystem::path path) {
 
 std::string extensionOf(std::filesystem::path path) {
   if (path.extension() == ".gz") path = path.stem();
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return extension;
+  return lowerCase(path.extension().string());
 }
 
 /// Takes off a byte order mark and turns lone carriage returns (classic Mac OS) into line feeds.
@@ -55,13 +54,9 @@ void mendLineEnds(std::string& text, Oddities& oddities) {
 
 /// Atoms of residues at one place share its first alternate location, so that of two residue names one stays.
 void markFirstAltlocs(const Molecule& m, std::vector<std::uint8_t>& keep) {
-  const auto samePlace = [&m](std::size_t a, std::size_t b) {
-    return m.residues[a].chain == m.residues[b].chain && m.residues[a].number == m.residues[b].number &&
-           m.residues[a].insertionCode == m.residues[b].insertionCode;
-  };
   for (std::size_t first = 0; first < m.residues.size();) {
     std::size_t end = first + 1;
-    while (end < m.residues.size() && samePlace(first, end)) ++end;
+    while (end < m.residues.size() && samePlace(m.residues[first], m.residues[end])) ++end;
     const std::uint32_t begin = m.residues[first].atoms.first;
     const std::uint32_t last = m.residues[end - 1].atoms.end();
     char lowest = ' ';
