@@ -54,11 +54,7 @@ double AmbientField::at(const glm::dvec3& point) const {
 
 AmbientField makeAmbientField(const MetaballField& field, int terms, int cells) {
   MENISCUS_CHECK(terms >= 0 && cells >= 1 && !field.balls.empty());
-  glm::dvec3 low(std::numeric_limits<double>::infinity()), high = -low;
-  for (const Metaball& ball : field.balls) {
-    low = glm::min(low, glm::dvec3(ball.center) - static_cast<double>(ball.support));
-    high = glm::max(high, glm::dvec3(ball.center) + static_cast<double>(ball.support));
-  }
+  const auto [low, high] = supportBox(field);
   const glm::dvec3 extent = high - low;
   AmbientField out;
   out.base = glm::vec3(low);

@@ -66,6 +66,15 @@ bool MetaballField::allPositive() const {
   return std::all_of(balls.begin(), balls.end(), [](const Metaball& b) { return b.coefficient > 0; });
 }
 
+FieldBox supportBox(const MetaballField& field) {
+  glm::dvec3 low(std::numeric_limits<double>::infinity()), high = -low;
+  for (const Metaball& ball : field.balls) {
+    low = glm::min(low, glm::dvec3(ball.center) - static_cast<double>(ball.support));
+    high = glm::max(high, glm::dvec3(ball.center) + static_cast<double>(ball.support));
+  }
+  return {low, high};
+}
+
 double levelOfBlend(const Kernel& kernel, double blend) {
   return kernelValue(kernel, 1 - 1 / (blend * blend));
 }

@@ -50,6 +50,12 @@ struct MetaballField {
   bool allPositive() const;
 };
 
+struct FieldBox {
+  glm::dvec3 low, high;  ///< [Å]; low > high for a field without balls
+};
+/// Of all supports.
+FieldBox supportBox(const MetaballField& field);
+
 /// The level at which a ball of coefficient 1 whose support is `blend` (> 1) times a radius has that radius.
 double levelOfBlend(const Kernel& kernel, double blend);
 

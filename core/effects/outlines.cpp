@@ -200,6 +200,10 @@ void drawRow(const OutlineTask& task, const OutlineBand& band, int row, std::uin
     const std::size_t at = band.at(column, row);
     const auto count = static_cast<std::size_t>(std::min(lanes, width - column));
     const M wanted = hn::LoadU(f, band.depth.data() + at) > zero;
+    if (hn::AllFalse(f, wanted)) {
+      storeShares(zero, count, out + static_cast<std::size_t>(column));
+      continue;
+    }
     Squares squares{all(kFar), all(kFar)};
     for (int y = low; y <= high; ++y) {
       for (int x = -reach; x <= reach; ++x) {

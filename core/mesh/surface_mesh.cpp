@@ -150,15 +150,13 @@ glm::dvec3 BlockMesher::onEdge(const glm::ivec3& node, int axis) const {
     if (i % 4 == 3 || !(x > low && x < high)) x = low + 0.5 * (high - low);
     at[axis] = x;
     const double f = fieldAt(field_, balls_, block_.balls, at);
-    if (f == 0) return at;
+    if (std::abs(f) < 1e-13 * field_.level) return at;
     const int side = (f > 0) == (fLow > 0) ? -1 : 1;
     if (side < 0) {
-      if (std::abs(f) < 1e-13 * field_.level) return at;
       low = x;
       fLow = f;
       if (lastSide < 0) fHigh *= 0.5;
     } else {
-      if (std::abs(f) < 1e-13 * field_.level) return at;
       high = x;
       fHigh = f;
       if (lastSide > 0) fLow *= 0.5;
@@ -236,11 +234,7 @@ glm::dvec3 BlockMesher::towardsSurface(const glm::dvec3& from) const {
 }
 
 Grid gridAround(const MetaballField& field, double spacing) {
-  glm::dvec3 low(std::numeric_limits<double>::infinity()), high = -low;
-  for (const Metaball& ball : field.balls) {
-    low = glm::min(low, glm::dvec3(ball.center) - static_cast<double>(ball.support));
-    high = glm::max(high, glm::dvec3(ball.center) + static_cast<double>(ball.support));
-  }
+  const auto [low, high] = supportBox(field);
   // Off the supports by a share of a cube that no lattice has, so that few nodes lie on the surface.
   Grid grid{low - spacing * glm::dvec3(0.6180339887, 0.4142135624, 0.7320508076), spacing};
   const glm::dvec3 size = high - grid.base;
