@@ -89,12 +89,15 @@ std::optional<std::vector<glm::dmat4>> expandOperations(const std::string& expre
   return product;
 }
 
-void addAssemblies(Molecule& molecule, const std::vector<AssemblyRecord>& records,
-                   const std::vector<std::string>& chainOfResidue, Oddities& oddities) {
+void addAssemblies(Molecule& molecule, const std::vector<AssemblyRecord>& records, ChainNaming naming,
+                   Oddities& oddities) {
   if (records.empty()) return;
   std::unordered_map<std::string_view, std::vector<IndexRange>> rangesOf;
-  for (std::uint32_t i = 0; i < chainOfResidue.size(); ++i) {
-    std::vector<IndexRange>& ranges = rangesOf[chainOfResidue[i]];
+  for (std::uint32_t i = 0; i < molecule.residues.size(); ++i) {
+    const Residue& residue = molecule.residues[i];
+    const std::string& chain =
+        naming == ChainNaming::subchain ? residue.subchain : molecule.chains[residue.chain].name;
+    std::vector<IndexRange>& ranges = rangesOf[chain];
     if (ranges.empty() || ranges.back().end() != i) ranges.push_back({i, 0});
     ++ranges.back().count;
   }

@@ -27,9 +27,12 @@ struct AssemblyRecord {
 std::optional<std::vector<glm::dmat4>> expandOperations(const std::string& expression,
                                                         const std::map<std::string, glm::dmat4>& operators);
 
-/// Turns chain lists into ranges of residues; `chainOfResidue` holds for each residue the id that the records
-/// mean. Unknown chains become oddities; assemblies that come out empty are left out.
-void addAssemblies(Molecule& molecule, const std::vector<AssemblyRecord>& records,
-                   const std::vector<std::string>& chainOfResidue, Oddities& oddities);
+/// What the records call a chain: Chain::name, or Residue::subchain.
+enum class ChainNaming : std::uint8_t { chain, subchain };
+
+/// Turns chain lists into ranges of residues. Unknown chains become oddities; assemblies that come out empty
+/// are left out.
+void addAssemblies(Molecule& molecule, const std::vector<AssemblyRecord>& records, ChainNaming naming,
+                   Oddities& oddities);
 
 }  // namespace meniscus

@@ -24,7 +24,6 @@ using Texts = std::vector<std::string>;
 using Values = std::variant<Bytes, Numbers, Texts>;
 
 constexpr std::size_t kMostValues = std::size_t{1} << 28;
-constexpr int kFloat32 = 32;
 
 [[noreturn]] void damaged(std::string_view what) {
   throw InputError(fmt::format("is damaged BinaryCIF ({}): fetch it again", what));
@@ -83,7 +82,7 @@ Numbers byteArray(const Json& encoding, const Bytes& bytes) {
       return readArray<std::uint16_t>(bytes);
     case 6:
       return readArray<std::uint32_t>(bytes);
-    case kFloat32:
+    case 32:
       return readArray<float>(bytes);
     case 33:
       return readArray<double>(bytes);
@@ -208,9 +207,9 @@ class ShallowBuilder : public nlohmann::detail::json_sax_dom_parser<Json> {
 std::string quoted(const std::string& text) {
   if (text.find('\n') != std::string::npos) return "\n;" + text + "\n;";
   if (text.empty()) return "''";
-  const bool plain = text.find_first_of(" \t'\"#") == std::string::npos && text[0] != '_' && text[0] != '$' &&
-                     text[0] != ';' && text[0] != '[' && text[0] != ']' && text != "." && text != "?" &&
-                     !text.starts_with("data_") && !text.starts_with("loop_") && !text.starts_with("save_");
+  // An underscore also makes tags and reserved words, in any letter case: data_, loop_, stop_, ...
+  const bool plain = text.find_first_of(" \t'\"#_") == std::string::npos && text[0] != '$' &&
+                     text[0] != ';' && text[0] != '[' && text[0] != ']' && text != "." && text != "?";
   if (plain) return text;
   if (text.find('\'') == std::string::npos) return "'" + text + "'";
   if (text.find('"') == std::string::npos) return '"' + text + '"';

@@ -305,17 +305,17 @@ ReadModels readAtomSite(const std::string& text, Block& block, const ModelChoice
     builders[static_cast<std::size_t>(builder)].add(atom);
   }
   const bool predicted = saysPredicted(block);
+  const std::string name = entryName(block), spaceGroup = readSpaceGroup(block);
+  const std::optional<UnitCell> cell = readCell(block);
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     Molecule molecule = builders[i].finish();
-    molecule.name = entryName(block);
+    molecule.name = name;
     molecule.model = column.numbers[chosen[i]];
     molecule.modelIndex = static_cast<std::int32_t>(chosen[i]);
-    molecule.cell = readCell(block);
-    molecule.spaceGroup = readSpaceGroup(block);
+    molecule.cell = cell;
+    molecule.spaceGroup = spaceGroup;
     addNamedBonds(molecule, named, oddities);
-    std::vector<std::string> subchains;
-    for (const Residue& residue : molecule.residues) subchains.push_back(residue.subchain);
-    addAssemblies(molecule, assemblies, subchains, oddities);
+    addAssemblies(molecule, assemblies, ChainNaming::subchain, oddities);
     addSecondary(molecule, secondary, oddities);
     if (predicted) markPredicted(molecule, oddities);
     read.models.push_back(std::move(molecule));

@@ -165,7 +165,6 @@ ReadModels readPdb(const std::string& text, const ModelChoice& choice, Oddities&
   std::vector<NamedBond> named;
   std::vector<AssemblyRecord> assemblies;
   std::optional<UnitCell> cell;
-  std::string spaceGroup;
   std::vector<SecondaryRange> secondary;
   bool first = true;
   for (const std::size_t i : chooseModels(numbers, choice, oddities)) {
@@ -177,7 +176,6 @@ ReadModels readPdb(const std::string& text, const ModelChoice& choice, Oddities&
       named = toBonds(structure);
       assemblies = toAssemblies(structure);
       cell = toCell(structure.cell);
-      spaceGroup = outline.spaceGroup;
       secondary = toSecondary(structure);
     }
     first = false;
@@ -186,16 +184,11 @@ ReadModels readPdb(const std::string& text, const ModelChoice& choice, Oddities&
     molecule.model = numbers[i];
     molecule.modelIndex = static_cast<std::int32_t>(i);
     molecule.cell = cell;
-    molecule.spaceGroup = spaceGroup;
+    molecule.spaceGroup = outline.spaceGroup;
     addSecondary(molecule, secondary, oddities);
     addNamedBonds(molecule, named, oddities);
     addSerialBonds(molecule, outline.conect, oddities);
-    std::vector<std::string> chainOfResidue;
-    if (!assemblies.empty()) {
-      for (const Residue& residue : molecule.residues)
-        chainOfResidue.push_back(molecule.chains[residue.chain].name);
-    }
-    addAssemblies(molecule, assemblies, chainOfResidue, oddities);
+    addAssemblies(molecule, assemblies, ChainNaming::chain, oddities);
     if (outline.saysPredicted && !outline.saysExperiment) markPredicted(molecule, oddities);
     read.models.push_back(std::move(molecule));
   }

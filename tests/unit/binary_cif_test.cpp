@@ -100,6 +100,20 @@ TEST(BinaryCif, holdsWhatItsColumnsEncode) {
   EXPECT_EQ(m.names[1].view(), "CA'");
 }
 
+// As text they would be tags, reserved words in any letter case, or the end of a text.
+TEST(BinaryCif, holdsWordsThatTextReserves) {
+  for (const char* word : {"STOP_", "global_", "Data_x", "loop_", "_tag", "'", ";x", "[1]"}) {
+    SCOPED_TRACE(word);
+    Json json = document();
+    const auto length = static_cast<std::int32_t>(std::strlen(word));
+    json["dataBlocks"][0]["categories"][0]["columns"][8] =
+        column("auth_asym_id", texts(word, {0, length}, {0, 0, 0}));
+    Logger logger;
+    const Molecule m = readStructureBytes(packed(json), "test.bcif", {}, logger).models.at(0);
+    EXPECT_EQ(m.chains.at(0).name, word);
+  }
+}
+
 TEST(BinaryCif, damageIsSaid) {
   Logger logger;
   const auto errorOf = [&](const std::string& bytes) {
