@@ -124,43 +124,14 @@ TEST_F(Bezier, CameraInsideBallsAndInsideTheSurface) {
   }
 }
 
-// A scene in which spheres and two surfaces hide each other.
 TEST_F(Bezier, SpheresAndSurfacesHideEachOther) {
-  const test::SurfaceScene scene = test::twoSurfaces();
-  const View view = viewOf(scene, {96, 72});
-  const HitImage surfaces = draw(scene, view, options());
-  auto spheres = std::make_shared<Primitives>();
-  spheres->origin = scene.primitives->origin;
-  spheres->spheres = test::spheresAmongSurfaces();
-  const HitImage alone = draw({spheres}, view, options());
-  scene.primitives->spheres = spheres->spheres;
-  const HitImage both = draw(scene, view, options());
-  int fromSpheres = 0, fromSurfaces = 0;
-  for (std::size_t i = 0; i < both.id.size(); ++i) {
-    const bool sphere = alone.distance[i] < surfaces.distance[i];
-    if (std::abs(alone.distance[i] - surfaces.distance[i]) < 1e-4f) continue;
-    EXPECT_EQ(both.id[i], sphere ? alone.id[i] : surfaces.id[i]);
-    EXPECT_EQ(both.distance[i], sphere ? alone.distance[i] : surfaces.distance[i]);
-    ++(sphere ? fromSpheres : fromSurfaces);
-  }
-  EXPECT_GT(fromSpheres, 100);
-  EXPECT_GT(fromSurfaces, 100);
+  expectSpheresAndSurfacesHideEachOther(options());
   // What lies behind quadrics need not be drawn.
   EXPECT_LT(detail("balls left after culling"), detail("balls in view"));
 }
 
 TEST_F(Bezier, AnyTilesOfTheTargetGiveTheSameBytes) {
-  const test::SurfaceScene scene = test::randomScene(150, 3);
-  const View view = viewOf(scene, {90, 70});
-  const HitImage whole = draw(scene, view, options());
-  RendererOptions small;
-  small.maxTileSize = 33;
-  Renderer renderer(small);
-  renderer.setPrimitives(scene.primitives);
-  const HitImage parts = renderer.renderHits(view, {}, options());
-  EXPECT_EQ(parts.id, whole.id);
-  EXPECT_EQ(parts.distance, whole.distance);
-  EXPECT_EQ(draw(scene, view, options()).distance, whole.distance) << "the same every time";
+  expectAnyTilesGiveTheSameBytes(options());
 }
 
 TEST_F(Bezier, RefusesNumbersThatAreNotFinite) {

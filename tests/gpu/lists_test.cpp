@@ -184,39 +184,11 @@ TEST_F(Lists, CameraInsideBallsAndInsideTheSurface) {
 }
 
 TEST_F(Lists, SpheresAndSurfacesHideEachOther) {
-  const test::SurfaceScene scene = test::twoSurfaces();
-  const View view = viewOf(scene, {96, 72});
-  const HitImage surfaces = draw(scene, view, lists());
-  auto spheres = std::make_shared<Primitives>();
-  spheres->origin = scene.primitives->origin;
-  spheres->spheres = test::spheresAmongSurfaces();
-  const HitImage alone = draw({spheres}, view, lists());
-  scene.primitives->spheres = spheres->spheres;
-  const HitImage both = draw(scene, view, lists());
-  int fromSpheres = 0, fromSurfaces = 0;
-  for (std::size_t i = 0; i < both.id.size(); ++i) {
-    const bool sphere = alone.distance[i] < surfaces.distance[i];
-    if (std::abs(alone.distance[i] - surfaces.distance[i]) < 1e-4f) continue;
-    EXPECT_EQ(both.id[i], sphere ? alone.id[i] : surfaces.id[i]);
-    EXPECT_EQ(both.distance[i], sphere ? alone.distance[i] : surfaces.distance[i]);
-    ++(sphere ? fromSpheres : fromSurfaces);
-  }
-  EXPECT_GT(fromSpheres, 100);
-  EXPECT_GT(fromSurfaces, 100);
+  expectSpheresAndSurfacesHideEachOther(lists());
 }
 
 TEST_F(Lists, AnyTilesOfTheTargetGiveTheSameBytes) {
-  const test::SurfaceScene scene = test::randomScene(150, 3);
-  const View view = viewOf(scene, {90, 70});
-  const HitImage whole = draw(scene, view, lists());
-  RendererOptions small;
-  small.maxTileSize = 33;
-  Renderer renderer(small);
-  renderer.setPrimitives(scene.primitives);
-  const HitImage parts = renderer.renderHits(view, {}, lists());
-  EXPECT_EQ(parts.id, whole.id);
-  EXPECT_EQ(parts.distance, whole.distance);
-  EXPECT_EQ(draw(scene, view, lists()).distance, whole.distance) << "the same every time";
+  expectAnyTilesGiveTheSameBytes(lists());
 }
 
 TEST_F(Lists, RefusesNumbersThatAreNotFinite) {
@@ -284,14 +256,7 @@ TEST_F(Lists, NothingIsDrawnAboveEveryMaximum) {
 }
 
 TEST_F(Lists, TangentRays) {
-  const auto [scene, view] = test::tangentRays();
-  const HitImage image = draw(scene, view, lists());
-  // Of two balls' sum, which is the level to the last bit, rounding decides.
-  for (int i = 0; i < 15 * 15; ++i) {
-    const bool sum = i == 7 * 15 + 7;
-    EXPECT_TRUE(sum || image.id[static_cast<std::size_t>(i)] == 0) << i;
-  }
-  EXPECT_EQ(stats.notConverged, 0u);
+  expectTangentRaysMiss(lists());
 }
 
 }  // namespace

@@ -83,10 +83,7 @@ TEST_F(MeshMethod, APixelShowsItsTriangle) {
   View cut = viewOf(scene, {48, 36});  // by the near plane
   cut.nearZ = 0;
   expectExactToTheTriangle(scene, cut, 1.0);
-  View far = viewOf(scene, {48, 36});
-  far.pixelSize *= far.distance / 1e4;
-  far.distance = 1e4;
-  expectExactToTheTriangle(scene, far, 1.0);
+  expectExactToTheTriangle(scene, viewFromAfar(scene, {48, 36}), 1.0);
 }
 
 TEST_F(MeshMethod, ErrorFallsWithTheSpacing) {
@@ -122,11 +119,7 @@ TEST_F(MeshMethod, AnyTilesOfTheTargetGiveTheSameSurface) {
   const SurfaceScene scene = test::randomScene(100, 3);
   const View view = viewOf(scene, {90, 70});
   const HitImage whole = draw(scene, view, meshOf(0.7));
-  RendererOptions small;
-  small.maxTileSize = 33;
-  Renderer renderer(small);
-  renderer.setPrimitives(scene.primitives);
-  const HitImage parts = renderer.renderHits(view, {}, meshOf(0.7));
+  const HitImage parts = drawInTiles(scene, view, meshOf(0.7));
   std::size_t different = 0;
   for (std::size_t i = 0; i < whole.id.size(); ++i)
     different += whole.distance[i] != parts.distance[i] || whole.id[i] != parts.id[i] ? 1 : 0;

@@ -119,48 +119,17 @@ TEST_F(Newton, LevelsNearZeroAndNearTheMaximum) {
 }
 
 TEST_F(Newton, TangentRaysMissAndEnd) {
-  const test::SurfaceView s = test::tangentRays();
-  const HitImage image = draw(s.scene, s.view, newton());
-  const std::size_t middle = image.id.size() / 2;  // two balls whose sum is the level: rounding decides
-  for (std::size_t i = 0; i < image.id.size(); ++i) EXPECT_TRUE(i == middle || image.id[i] == 0) << i;
-  EXPECT_EQ(stats.notConverged, 0u);
+  expectTangentRaysMiss(newton());
 }
 
 TEST_F(Newton, SpheresAndTwoSurfacesHideEachOther) {
   const test::SurfaceScene scene = test::twoSurfaces();
-  const View view = viewOf(scene, {96, 72});
-  expectExact(judge(scene, view, newton()));
-  const HitImage surfaces = draw(scene, view, newton());
-  auto spheres = std::make_shared<Primitives>();
-  spheres->origin = scene.primitives->origin;
-  spheres->spheres = test::spheresAmongSurfaces();
-  const HitImage alone = draw({spheres}, view, newton());
-  scene.primitives->spheres = spheres->spheres;
-  const HitImage both = draw(scene, view, newton());
-  int fromSpheres = 0, fromSurfaces = 0;
-  for (std::size_t i = 0; i < both.id.size(); ++i) {
-    if (std::abs(alone.distance[i] - surfaces.distance[i]) < 1e-4f) continue;
-    const bool sphere = alone.distance[i] < surfaces.distance[i];
-    EXPECT_EQ(both.id[i], sphere ? alone.id[i] : surfaces.id[i]);
-    if (both.id[i] == 0) continue;
-    EXPECT_NEAR(both.distance[i], sphere ? alone.distance[i] : surfaces.distance[i], 1e-5f);
-    ++(sphere ? fromSpheres : fromSurfaces);
-  }
-  EXPECT_GT(fromSpheres, 100);
-  EXPECT_GT(fromSurfaces, 100);
+  expectExact(judge(scene, viewOf(scene, {96, 72}), newton()));
+  expectSpheresAndSurfacesHideEachOther(newton(), QuadricMethod::automatic, 1e-5f);
 }
 
 TEST_F(Newton, AnyTilesOfTheTargetGiveTheSameBytes) {
-  const test::SurfaceScene scene = test::randomScene(150, 3);
-  const View view = viewOf(scene, {90, 70});
-  const HitImage whole = draw(scene, view, newton());
-  RendererOptions small;
-  small.maxTileSize = 33;
-  Renderer renderer(small);
-  renderer.setPrimitives(scene.primitives);
-  const HitImage parts = renderer.renderHits(view, {}, newton());
-  EXPECT_EQ(parts.id, whole.id);
-  EXPECT_EQ(parts.distance, whole.distance);
+  expectAnyTilesGiveTheSameBytes(newton());
 }
 
 // The poster's iteration: pixels are lost, counted, and shown.

@@ -52,45 +52,12 @@ TEST_F(SurfaceTiles, LevelNearTheMaximum) {
 
 // Surfaces among themselves, and with quadrics however these are drawn.
 TEST_F(SurfaceTiles, QuadricsAndSurfacesHideEachOther) {
-  const test::SurfaceScene scene = test::twoSurfaces();
-  const View view = viewOf(scene, {96, 72});
-  const HitImage surfaces = draw(scene, view, kTiles);
-  auto spheres = std::make_shared<Primitives>();
-  spheres->origin = scene.primitives->origin;
-  spheres->spheres = test::spheresAmongSurfaces();
-  scene.primitives->spheres = spheres->spheres;
-  for (const QuadricMethod quadrics : {QuadricMethod::splat, QuadricMethod::tiles}) {
-    const auto hits = [&](const std::shared_ptr<Primitives>& primitives) {
-      Renderer renderer;
-      renderer.setPrimitives(primitives);
-      return renderer.renderHits(view, {.distance = true, .normal = false, .id = true}, kTiles, quadrics);
-    };
-    const HitImage alone = hits(spheres), both = hits(scene.primitives);
-    int fromSpheres = 0, fromSurfaces = 0;
-    for (std::size_t i = 0; i < both.id.size(); ++i) {
-      const bool sphere = alone.distance[i] < surfaces.distance[i];
-      if (std::abs(alone.distance[i] - surfaces.distance[i]) < 1e-4f) continue;
-      EXPECT_EQ(both.id[i], sphere ? alone.id[i] : surfaces.id[i]);
-      EXPECT_EQ(both.distance[i], sphere ? alone.distance[i] : surfaces.distance[i]);
-      ++(sphere ? fromSpheres : fromSurfaces);
-    }
-    EXPECT_GT(fromSpheres, 100);
-    EXPECT_GT(fromSurfaces, 100);
-  }
+  for (const QuadricMethod quadrics : {QuadricMethod::splat, QuadricMethod::tiles})
+    expectSpheresAndSurfacesHideEachOther(kTiles, quadrics);
 }
 
 TEST_F(SurfaceTiles, AnyTilesOfTheTargetGiveTheSameBytes) {
-  const test::SurfaceScene scene = test::randomScene(150, 3);
-  const View view = viewOf(scene, {90, 70});
-  const HitImage whole = draw(scene, view, kTiles);
-  RendererOptions small;
-  small.maxTileSize = 33;
-  Renderer renderer(small);
-  renderer.setPrimitives(scene.primitives);
-  const HitImage parts = renderer.renderHits(view, {}, kTiles);
-  EXPECT_EQ(parts.id, whole.id);
-  EXPECT_EQ(parts.distance, whole.distance);
-  EXPECT_EQ(draw(scene, view, kTiles).distance, whole.distance) << "the same every time";
+  expectAnyTilesGiveTheSameBytes(kTiles);
 }
 
 TEST_F(SurfaceTiles, AreWhatAutoTakes) {
