@@ -1,6 +1,7 @@
 #include "bench/bench_scenes.h"
 
 #include <algorithm>
+#include <chrono>
 #include <ctime>
 #include <filesystem>
 
@@ -72,6 +73,18 @@ double processorMs(const std::function<void()>& call) {
   const std::clock_t start = std::clock();
   call();
   return 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+}
+
+double wallMs(const std::function<void()>& call) {
+  const auto start = std::chrono::steady_clock::now();
+  call();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+double detail(const SurfaceStats& stats, std::string_view name) {
+  for (const auto& [what, value] : stats.details)
+    if (what == name) return value;
+  return 0;
 }
 
 }  // namespace meniscus::bench

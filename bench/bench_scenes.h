@@ -4,12 +4,14 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/image.h"
 #include "core/primitives.h"
 #include "core/scene.h"
 #include "core/view.h"
+#include "render/render_stats.h"
 
 namespace meniscus::bench {
 
@@ -40,5 +42,11 @@ double median(std::vector<double> values);
 /// Processor time of a call, of all threads together [ms]: without a GPU it is what drawing costs, however
 /// busy the machine is with other work.
 double processorMs(const std::function<void()>& call);
+
+/// [ms]
+double wallMs(const std::function<void()>& call);
+
+/// What a surface's method calls so; 0 if it does not.
+double detail(const SurfaceStats& stats, std::string_view name);
 
 }  // namespace meniscus::bench

@@ -25,12 +25,6 @@
 namespace meniscus::bench {
 namespace {
 
-double wallMs(const std::function<void()>& call) {
-  const auto start = std::chrono::steady_clock::now();
-  call();
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
-
 constexpr ImageSize kSmall{640, 480}, kLarge{1024, 768};
 
 struct FieldScene {
@@ -68,13 +62,6 @@ View viewOf(const FieldScene& scene, ImageSize size) {
 
 using Parameters = std::map<std::string, double>;
 
-// Processor time of all threads [ms]: on a busy machine it says more than the clock on the wall.
-double processorMs(const std::function<void()>& call) {
-  const std::clock_t start = std::clock();
-  call();
-  return 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-}
-
 struct Run {
   double ms = 0, cpuMs = 0;
   SurfaceStats stats;
@@ -107,12 +94,6 @@ Run draw(const FieldScene& scene, ImageSize size, const Parameters& parameters, 
   run.ms = median(times);
   run.cpuMs = median(cpuTimes);
   return run;
-}
-
-double detail(const SurfaceStats& stats, std::string_view name) {
-  for (const auto& [what, value] : stats.details)
-    if (what == name) return value;
-  return 0;
 }
 
 void print(const char* what, const FieldScene& scene, ImageSize size, const char* setting, const Run& run,

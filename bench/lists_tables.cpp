@@ -64,12 +64,6 @@ Run draw(const std::shared_ptr<const Primitives>& primitives, const View& view,
   return run;
 }
 
-double detail(const SurfaceStats& stats, std::string_view name) {
-  for (const auto& [what, value] : stats.details)
-    if (what == name) return value;
-  return 0;
-}
-
 void print(std::size_t balls, const char* method, const Run& run, const ReferenceImage* truth) {
   fmt::print("{},{},{:.0f}", balls, method, run.ms);
   for (const char* part : kParts) {

@@ -56,11 +56,10 @@ int main(int argc, char** argv) {
       bench::NullSink sink;
       double wall = 0;
       const double processor = bench::processorMs([&] {
-        const auto start = std::chrono::steady_clock::now();
-        renderer.renderPicture(view, Lighting{}, {}, settings, PixelFormat::rgba8, sink);
-        wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        wall = bench::wallMs(
+            [&] { renderer.renderPicture(view, Lighting{}, {}, settings, PixelFormat::rgba8, sink); });
       });
-      fmt::print("FRAME {} {:.4f} {:.4f}\n", i, wall, processor / 1e3);
+      fmt::print("FRAME {} {:.4f} {:.4f}\n", i, wall / 1e3, processor / 1e3);
       camera.orientation = glm::angleAxis(glm::radians(10.0), glm::dvec3(0, 1, 0)) * camera.orientation;
     }
     return 0;

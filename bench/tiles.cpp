@@ -109,11 +109,7 @@ using AllTimes = std::map<std::string, Times>;
 
 void record(AllTimes& times, const std::string& name, bool keep, const std::function<void()>& call) {
   double wall = 0;
-  const double processor = processorMs([&] {
-    const auto start = std::chrono::steady_clock::now();
-    call();
-    wall = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  });
+  const double processor = processorMs([&] { wall = wallMs(call); });
   if (!keep) return;
   times[name].wall.push_back(wall);
   times[name].processor.push_back(processor);
