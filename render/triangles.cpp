@@ -68,6 +68,7 @@ void addTriangles(FrameGraph& graph, const TriangleBuffers& triangles, ShaderLib
                   }
                   glDrawElements(GL_TRIANGLES, triangles.indexCount(), GL_UNSIGNED_INT, nullptr);
                   glDisable(GL_CULL_FACE);
+                  glCullFace(GL_BACK);
                   glDisable(GL_DEPTH_TEST);
                 });
 }

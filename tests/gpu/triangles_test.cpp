@@ -169,6 +169,33 @@ TEST_F(TrianglesTest, aMeshCastsShadowsButNoneOnItsOwnLitSide) {
   EXPECT_GT(share, 0.004);
 }
 
+// In a shadow map the sides that face away from the light are drawn, and nowhere else: methods leave out
+// those that face away from the viewer.
+TEST_F(TrianglesTest, surfacesShowTheirOuterSidesAfterAShadowMapWithTriangles) {
+  const auto scene = std::make_shared<Primitives>();
+  addBall(scene->mesh, {-4, 0, 0}, 2, 0xC0C0C0, 1);
+  MetaballField field;
+  field.balls.push_back({{4, 0, 0}, 4, 1, 0x4080FF, 2});
+  scene->surfaces.push_back(field);
+  Camera camera;
+  camera.distance = 30;
+  camera.fovY = 0.5;
+  const View view = makeView(camera, kSize, scene->bounds());
+  const SurfaceSettings mesh{"mesh", {}};
+  Renderer renderer;
+  renderer.setPrimitives(scene);
+  const HitImage before = renderer.renderHits(view, {.distance = true, .normal = true, .id = true}, mesh);
+  EXPECT_GT(std::count(before.id.begin(), before.id.end(), 2u), 500);
+  RenderSettings shadowed = test::withSamples(1);
+  shadowed.surface = mesh;
+  shadowed.shadows.mode = ShadowMode::hard;
+  draw(renderer, view, shadowed);
+  const HitImage after = renderer.renderHits(view, {.distance = true, .normal = true, .id = true}, mesh);
+  EXPECT_EQ(after.distance, before.distance);
+  EXPECT_TRUE(after.normal == before.normal);
+  EXPECT_EQ(after.id, before.id);
+}
+
 LabelSprite block(glm::dvec3 center, double radius, int width, int height) {
   LabelSprite sprite;
   sprite.label = {"x", center, radius};
