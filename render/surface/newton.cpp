@@ -320,7 +320,9 @@ void Newton::drawHulls(const Frame& frame, const Band& band) {
 }
 
 void Newton::finish(const Frame& frame, const Band& band) {
-  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
+  // What the hulls' images hold is read here, cleared by the next band, and the pool may give the textures
+  // away as attachments.
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_FRAMEBUFFER_BARRIER_BIT);
   frame.context.bindTarget();
   textures_.bind();
   glBindTextureUnit(4, band.status->object.name());
