@@ -2,6 +2,7 @@
 
 #include <glad/gl.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 
@@ -9,11 +10,26 @@
 
 namespace meniscus {
 
-void TriangleBuffers::upload(const TriangleMesh& mesh) {
+namespace {
+
+// Parts of a storage buffer begin at multiples of what the driver says, which is at most 256 bytes
+// (SHADER_STORAGE_BUFFER_OFFSET_ALIGNMENT, OpenGL 4.5).
+constexpr std::int64_t kPartStep = 256 / sizeof(TriangleSurface);
+
+int trianglesPerDraw(std::int64_t blockBytes, int all) {
+  const std::int64_t fit = blockBytes / static_cast<std::int64_t>(sizeof(TriangleSurface));
+  return static_cast<int>(std::clamp<std::int64_t>(fit / kPartStep * kPartStep, kPartStep,
+                                                   std::max<std::int64_t>(all, kPartStep)));
+}
+
+}  // namespace
+
+void TriangleBuffers::upload(const TriangleMesh& mesh, std::int64_t blockBytes) {
   if (mesh.empty() || !empty()) return;
   if (mesh.triangles.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()) / 3)
     throw InputError("the scene has more than 715,827,882 triangles; draw a part of it (--select)");
-  indexCount_ = static_cast<int>(3 * mesh.triangles.size());
+  count_ = static_cast<int>(mesh.triangles.size());
+  perDraw_ = trianglesPerDraw(blockBytes > 0 ? blockBytes : gl::queryLimits().storageBlock, count_);
   vertices_ = gl::Buffer::fromData(mesh.vertices.data(), mesh.vertices.size() * sizeof(TriangleVertex));
   indices_ = gl::Buffer::fromData(mesh.triangles.data(), mesh.triangles.size() * sizeof(TriangleCorners));
   surfaces_ = gl::Buffer::fromData(mesh.surfaces.data(), mesh.surfaces.size() * sizeof(TriangleSurface));
@@ -32,6 +48,20 @@ void TriangleBuffers::upload(const TriangleMesh& mesh) {
 
 void TriangleBuffers::clear() {
   *this = TriangleBuffers{};
+}
+
+void TriangleBuffers::draw() const {
+  glBindVertexArray(vertexArray_.name());
+  for (int first = 0; first < count_; first += perDraw_) {
+    const int count = std::min(perDraw_, count_ - first);
+    const auto from = static_cast<std::size_t>(first);
+    glBindBufferRange(GL_SHADER_STORAGE_BUFFER, 0, surfaces_.object.name(),
+                      static_cast<GLintptr>(from * sizeof(TriangleSurface)),
+                      static_cast<GLsizeiptr>(static_cast<std::size_t>(count) * sizeof(TriangleSurface)));
+    // OpenGL takes offsets as pointers. NOLINTNEXTLINE(performance-no-int-to-ptr)
+    const auto* corners = reinterpret_cast<const void*>(from * sizeof(TriangleCorners));
+    glDrawElements(GL_TRIANGLES, 3 * count, GL_UNSIGNED_INT, corners);
+  }
 }
 
 std::vector<ResourceStats> TriangleBuffers::buffers() const {
@@ -58,15 +88,13 @@ void addTriangles(FrameGraph& graph, const TriangleBuffers& triangles, ShaderLib
                   if (context.isLive(g.id)) flags.insert("ID");
                   if (context.isLive(g.distance)) flags.insert("DISTANCE");
                   glUseProgram(shaders.program("triangles/mesh.vert", "triangles/mesh.frag", flags));
-                  glBindVertexArray(triangles.vertexArray());
-                  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, triangles.surfaces());
                   glEnable(GL_DEPTH_TEST);
                   glDepthFunc(GL_GREATER);
                   if (shadow) {
                     glEnable(GL_CULL_FACE);
                     glCullFace(GL_FRONT);
                   }
-                  glDrawElements(GL_TRIANGLES, triangles.indexCount(), GL_UNSIGNED_INT, nullptr);
+                  triangles.draw();
                   glDisable(GL_CULL_FACE);
                   glCullFace(GL_BACK);
                   glDisable(GL_DEPTH_TEST);

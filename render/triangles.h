@@ -1,6 +1,7 @@
 #pragma once
 // Triangles with the normals of the surface that they stand for, into the G-buffer.
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -14,20 +15,19 @@ namespace meniscus {
 /// The GPU's copy of a mesh; an empty one has no buffers.
 class TriangleBuffers {
  public:
-  /// Uploads what is not there yet.
-  void upload(const TriangleMesh& mesh);
+  /// Uploads what is not there yet. Shaders see at most so many bytes of it at once; 0: as the driver allows.
+  void upload(const TriangleMesh& mesh, std::int64_t blockBytes = 0);
   void clear();
+  /// With the program that is in use.
+  void draw() const;
   std::vector<ResourceStats> buffers() const;
 
-  bool empty() const { return indexCount_ == 0; }
-  int indexCount() const { return indexCount_; }
-  unsigned vertexArray() const { return vertexArray_.name(); }
-  unsigned surfaces() const { return surfaces_.object.name(); }
+  bool empty() const { return count_ == 0; }
 
  private:
   gl::Object vertexArray_;
   gl::Buffer vertices_, indices_, surfaces_;
-  int indexCount_ = 0;
+  int count_ = 0, perDraw_ = 0;  // triangles
 };
 
 /// Adds the pass, or notes that the scene has no triangles. The view's uniform block must be bound

@@ -2,6 +2,8 @@
 
 #include "render/triangles.h"
 
+#include <glad/gl.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -9,6 +11,7 @@
 #include <string_view>
 
 #include "render/renderer.h"
+#include "render/view_block.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/scenes.h"
 
@@ -194,6 +197,46 @@ TEST_F(TrianglesTest, surfacesShowTheirOuterSidesAfterAShadowMapWithTriangles) {
   EXPECT_EQ(after.distance, before.distance);
   EXPECT_TRUE(after.normal == before.normal);
   EXPECT_EQ(after.id, before.id);
+}
+
+// Ids of a mesh whose triangles all have their own.
+std::vector<std::uint32_t> idsOf(const TriangleMesh& mesh, const View& view, std::int64_t blockBytes) {
+  ShaderLibrary shaders{{}};
+  TexturePool pool;
+  TriangleBuffers buffers;
+  buffers.upload(mesh, blockBytes);
+  const Tile tile{0, 0, view.size.width, view.size.height};
+  const f32::ViewBlock block = makeViewBlock(view, {0, 0, 0}, tile, {0, 0});
+  gl::Buffer uniforms = gl::Buffer::updatable(sizeof block);
+  uniforms.update(&block);
+  glBindBufferBase(GL_UNIFORM_BUFFER, 0, uniforms.object.name());
+  glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+  FrameGraph graph(pool);
+  const GBufferRefs gbuffer = createGBuffer(graph, tile.width, tile.height);
+  addTriangles(graph, buffers, shaders, gbuffer);
+  graph.want(gbuffer.id);
+  RenderStats stats;
+  graph.execute(stats, false);
+  std::vector<std::uint32_t> ids(static_cast<std::size_t>(tile.width) *
+                                 static_cast<std::size_t>(tile.height));
+  graph.texture(gbuffer.id).read(tile.width, tile.height, tile.width, ids.data());
+  return ids;
+}
+
+// A driver's storage blocks may be smaller than what a mesh has: it is drawn in parts.
+TEST_F(TrianglesTest, trianglesKeepTheirOwnIdsHoweverSmallStorageBlocksAre) {
+  Primitives scene;
+  addBall(scene.mesh, {0, 0, 0}, 2, 0xFF0000, 1);
+  for (std::size_t i = 0; i < scene.mesh.surfaces.size(); ++i)
+    scene.mesh.surfaces[i].id = static_cast<std::uint32_t>(i + 1);
+  Camera camera;
+  camera.distance = 10;
+  camera.fovY = 0.5;
+  const View view = makeView(camera, kSize, scene.bounds());
+  const std::vector<std::uint32_t> whole = idsOf(scene.mesh, view, 0);
+  EXPECT_GT(std::count_if(whole.begin(), whole.end(), [](std::uint32_t id) { return id != 0; }), 3000);
+  EXPECT_EQ(idsOf(scene.mesh, view, 5000), whole);  // 608 of the 36,864 at once, and a rest
+  EXPECT_EQ(idsOf(scene.mesh, view, 8192), whole);  // whole parts
 }
 
 LabelSprite block(glm::dvec3 center, double radius, int width, int height) {
