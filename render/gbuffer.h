@@ -1,7 +1,10 @@
 #pragma once
 // The channels of the G-buffer. Formats are fixed here; nothing is allocated before a pass writes it.
 
+#include <vector>
+
 #include "render/frame_graph.h"
+#include "render/shader_library.h"
 
 namespace meniscus {
 
@@ -15,5 +18,12 @@ struct GBufferRefs {
 
 /// Declares the channels in a graph.
 GBufferRefs createGBuffer(FrameGraph& graph, int width, int height);
+
+/// What a pass writes that draws into the G-buffer: the depth, and the channels that are valid where
+/// shaders/include/gbuffer.glsl has them.
+std::vector<FrameGraph::Attachment> attachmentsOf(const GBufferRefs& gbuffer);
+
+/// Flags of shaders/include/gbuffer.glsl: the channels that somebody reads.
+ShaderFlags channelFlags(const PassContext& context, const GBufferRefs& gbuffer);
 
 }  // namespace meniscus

@@ -49,19 +49,9 @@ QuadricBuffers::Kind uploadInstances(const std::vector<T>& instances) {
 
 void addKind(FrameGraph& graph, const QuadricBuffers::Kind& kind, std::string_view shape,
              const std::string& passName, ShaderLibrary& shaders, const GBufferRefs& g) {
-  std::vector<FrameGraph::Attachment> writes{{g.depth, FrameGraph::kDepth}};
-  for (const auto& [channel, location] :
-       {std::pair{g.albedo, 0}, std::pair{g.normal, 1}, std::pair{g.id, 2}, std::pair{g.distance, 3}}) {
-    if (channel.valid()) writes.push_back({channel, location});
-  }
-  graph.addPass(passName, {g.depth}, writes,
+  graph.addPass(passName, {g.depth}, attachmentsOf(g),
                 [&kind, &shaders, g, stem = "quadrics/" + std::string(shape)](const PassContext& context) {
-                  ShaderFlags flags;
-                  if (context.isLive(g.albedo)) flags.insert("ALBEDO");
-                  if (context.isLive(g.normal)) flags.insert("NORMAL");
-                  if (context.isLive(g.id)) flags.insert("ID");
-                  if (context.isLive(g.distance)) flags.insert("DISTANCE");
-                  glUseProgram(shaders.program(stem + ".vert", stem + ".frag", flags));
+                  glUseProgram(shaders.program(stem + ".vert", stem + ".frag", channelFlags(context, g)));
                   glBindVertexArray(kind.vertexArray.name());
                   glEnable(GL_DEPTH_TEST);
                   glDepthFunc(GL_GREATER);

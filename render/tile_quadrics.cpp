@@ -38,33 +38,29 @@ void TileQuadrics::add(FrameGraph& graph, const View& view, const Tile& tile, gl
     graph.leaveOut("pass " + prefix + "tiles", "the scene has no quadrics");
     return;
   }
-  std::vector<FrameGraph::Attachment> writes{{g.depth, FrameGraph::kDepth}};
-  for (const auto& [channel, location] :
-       {std::pair{g.albedo, 0}, std::pair{g.normal, 1}, std::pair{g.id, 2}, std::pair{g.distance, 3}}) {
-    if (channel.valid()) writes.push_back({channel, location});
-  }
   const tiles::TileTarget target{
       view, primitives_->origin, {tile.x, tile.y, tile.width, tile.height}, sampleShift};
   prepare();
   tiles::QuadricTiles& caster = prefix.empty() ? camera_ : light_;
   // The framebuffer is bound for nothing but its clearing: the part with no block in it stays background.
-  graph.addPass(prefix + "tiles", {}, writes, [this, &caster, target, g](const PassContext& context) {
-    caster.cast(target,
-                {context.isLive(g.albedo), context.isLive(g.normal), context.isLive(g.id),
-                 context.isLive(g.distance)},
-                planes_);
-    const auto upload = [&](TextureRef channel, const auto& plane) {
-      if (!context.isLive(channel)) return;
-      const tiles::PixelArea& part = planes_.area;
-      context.texture(channel).write(part.width, part.height, plane.data(), part.x - target.area.x,
-                                     part.y - target.area.y);
-    };
-    upload(g.depth, planes_.depth);
-    upload(g.albedo, planes_.albedo);
-    upload(g.normal, planes_.normal);
-    upload(g.id, planes_.id);
-    upload(g.distance, planes_.distance);
-  });
+  graph.addPass(prefix + "tiles", {}, attachmentsOf(g),
+                [this, &caster, target, g](const PassContext& context) {
+                  caster.cast(target,
+                              {context.isLive(g.albedo), context.isLive(g.normal), context.isLive(g.id),
+                               context.isLive(g.distance)},
+                              planes_);
+                  const auto upload = [&](TextureRef channel, const auto& plane) {
+                    if (!context.isLive(channel)) return;
+                    const tiles::PixelArea& part = planes_.area;
+                    context.texture(channel).write(part.width, part.height, plane.data(),
+                                                   part.x - target.area.x, part.y - target.area.y);
+                  };
+                  upload(g.depth, planes_.depth);
+                  upload(g.albedo, planes_.albedo);
+                  upload(g.normal, planes_.normal);
+                  upload(g.id, planes_.id);
+                  upload(g.distance, planes_.distance);
+                });
 }
 
 }  // namespace meniscus

@@ -75,30 +75,21 @@ void addTriangles(FrameGraph& graph, const TriangleBuffers& triangles, ShaderLib
     graph.leaveOut("pass " + prefix + "triangles", "the scene has none");
     return;
   }
-  std::vector<FrameGraph::Attachment> writes{{g.depth, FrameGraph::kDepth}};
-  for (const auto& [channel, location] :
-       {std::pair{g.albedo, 0}, std::pair{g.normal, 1}, std::pair{g.id, 2}, std::pair{g.distance, 3}}) {
-    if (channel.valid()) writes.push_back({channel, location});
-  }
-  graph.addPass(prefix + "triangles", {g.depth}, writes,
-                [&triangles, &shaders, g, shadow = !prefix.empty()](const PassContext& context) {
-                  ShaderFlags flags;
-                  if (context.isLive(g.albedo)) flags.insert("ALBEDO");
-                  if (context.isLive(g.normal)) flags.insert("NORMAL");
-                  if (context.isLive(g.id)) flags.insert("ID");
-                  if (context.isLive(g.distance)) flags.insert("DISTANCE");
-                  glUseProgram(shaders.program("triangles/mesh.vert", "triangles/mesh.frag", flags));
-                  glEnable(GL_DEPTH_TEST);
-                  glDepthFunc(GL_GREATER);
-                  if (shadow) {
-                    glEnable(GL_CULL_FACE);
-                    glCullFace(GL_FRONT);
-                  }
-                  triangles.draw();
-                  glDisable(GL_CULL_FACE);
-                  glCullFace(GL_BACK);
-                  glDisable(GL_DEPTH_TEST);
-                });
+  graph.addPass(
+      prefix + "triangles", {g.depth}, attachmentsOf(g),
+      [&triangles, &shaders, g, shadow = !prefix.empty()](const PassContext& context) {
+        glUseProgram(shaders.program("triangles/mesh.vert", "triangles/mesh.frag", channelFlags(context, g)));
+        glEnable(GL_DEPTH_TEST);
+        glDepthFunc(GL_GREATER);
+        if (shadow) {
+          glEnable(GL_CULL_FACE);
+          glCullFace(GL_FRONT);
+        }
+        triangles.draw();
+        glDisable(GL_CULL_FACE);
+        glCullFace(GL_BACK);
+        glDisable(GL_DEPTH_TEST);
+      });
 }
 
 }  // namespace meniscus

@@ -193,12 +193,7 @@ void Bezier::prepare(const MetaballField& field) {
 
 void Bezier::addPasses(FrameGraph& graph, ShaderLibrary& shaders, const SurfaceTarget& target) {
   const GBufferRefs g = target.gbuffer;
-  std::vector<FrameGraph::Attachment> writes{{g.depth, FrameGraph::kDepth}};
-  for (const auto& [channel, location] :
-       {std::pair{g.albedo, 0}, std::pair{g.normal, 1}, std::pair{g.id, 2}, std::pair{g.distance, 3}}) {
-    if (channel.valid()) writes.push_back({channel, location});
-  }
-  graph.addPass(target.prefix + "surface", {g.depth}, writes,
+  graph.addPass(target.prefix + "surface", {g.depth}, attachmentsOf(g),
                 [this, &shaders, view = target.view, origin = target.origin, tile = target.tile,
                  shift = target.sampleShift,
                  g](const PassContext& context) { draw(context, shaders, view, origin, tile, shift, g); });
@@ -486,11 +481,7 @@ void Bezier::step(Frame& frame, const Region& region, int layer) {
 
 void Bezier::shade(Frame& frame, const Region& region) {
   frame.context.bindTarget();
-  ShaderFlags flags;
-  if (frame.context.isLive(frame.gbuffer.albedo)) flags.insert("ALBEDO");
-  if (frame.context.isLive(frame.gbuffer.normal)) flags.insert("NORMAL");
-  if (frame.context.isLive(frame.gbuffer.id)) flags.insert("ID");
-  if (frame.context.isLive(frame.gbuffer.distance)) flags.insert("DISTANCE");
+  const ShaderFlags flags = channelFlags(frame.context, frame.gbuffer);
   glUseProgram(frame.shaders.program("surface/bezier_surface.vert", "surface/bezier_surface.frag", flags));
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_GREATER);

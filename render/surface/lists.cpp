@@ -155,8 +155,7 @@ void Lists::prepare(const MetaballField& field) {
 }
 
 void Lists::addPasses(FrameGraph& graph, ShaderLibrary& shaders, const SurfaceTarget& target) {
-  const GBufferRefs g = target.gbuffer;
-  std::vector<TextureRef> reads{g.depth};
+  std::vector<TextureRef> reads{target.gbuffer.depth};
   std::vector<FrameGraph::Attachment> writes;
   if (target.layers.valid()) {
     for (int i = 0; i < static_cast<int>(target.layers.of.size()); ++i)
@@ -164,11 +163,7 @@ void Lists::addPasses(FrameGraph& graph, ShaderLibrary& shaders, const SurfaceTa
     if (target.layersBefore.valid())
       reads.insert(reads.end(), target.layersBefore.of.begin(), target.layersBefore.of.end());
   } else {
-    writes.push_back({g.depth, FrameGraph::kDepth});
-    for (const auto& [channel, location] :
-         {std::pair{g.albedo, 0}, std::pair{g.normal, 1}, std::pair{g.id, 2}, std::pair{g.distance, 3}}) {
-      if (channel.valid()) writes.push_back({channel, location});
-    }
+    writes = attachmentsOf(target.gbuffer);
   }
   graph.addPass(target.prefix + "surface", std::move(reads), std::move(writes),
                 [this, &shaders, target](const PassContext& context) { draw(context, shaders, target); });
@@ -475,11 +470,7 @@ void Lists::walk(Frame& frame, const Region& region) {
 
 void Lists::shade(Frame& frame, const Region& region, const ScreenRect& band) {
   frame.context.bindTarget();
-  ShaderFlags flags;
-  if (frame.context.isLive(frame.gbuffer.albedo)) flags.insert("ALBEDO");
-  if (frame.context.isLive(frame.gbuffer.normal)) flags.insert("NORMAL");
-  if (frame.context.isLive(frame.gbuffer.id)) flags.insert("ID");
-  if (frame.context.isLive(frame.gbuffer.distance)) flags.insert("DISTANCE");
+  const ShaderFlags flags = channelFlags(frame.context, frame.gbuffer);
   glBindTextureUnit(0, region.places->object.name());
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_GREATER);

@@ -112,12 +112,7 @@ void Mesh::upload(const SurfaceMesh& mesh) {
 
 void Mesh::addPasses(FrameGraph& graph, ShaderLibrary& shaders, const SurfaceTarget& target) {
   const GBufferRefs g = target.gbuffer;
-  std::vector<FrameGraph::Attachment> writes{{g.depth, FrameGraph::kDepth}};
-  for (const auto& [channel, location] :
-       {std::pair{g.albedo, 0}, std::pair{g.normal, 1}, std::pair{g.id, 2}, std::pair{g.distance, 3}}) {
-    if (channel.valid()) writes.push_back({channel, location});
-  }
-  graph.addPass(target.prefix + "surface", {g.depth}, writes,
+  graph.addPass(target.prefix + "surface", {g.depth}, attachmentsOf(g),
                 [this, &shaders, g, fromOutside = isSeenFromOutside(target.view, target.origin)](
                     const PassContext& context) { draw(context, shaders, g, fromOutside); });
 }
@@ -132,12 +127,7 @@ bool Mesh::isSeenFromOutside(const View& view, const glm::dvec3& origin) const {
 
 void Mesh::draw(const PassContext& context, ShaderLibrary& shaders, const GBufferRefs& g,
                 bool fromOutside) const {
-  ShaderFlags flags;
-  if (context.isLive(g.albedo)) flags.insert("ALBEDO");
-  if (context.isLive(g.normal)) flags.insert("NORMAL");
-  if (context.isLive(g.id)) flags.insert("ID");
-  if (context.isLive(g.distance)) flags.insert("DISTANCE");
-  glUseProgram(shaders.program("surface/mesh.vert", "surface/mesh.frag", flags));
+  glUseProgram(shaders.program("surface/mesh.vert", "surface/mesh.frag", channelFlags(context, g)));
   glBindTextureUnit(0, vertices_.object.name());
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_GREATER);

@@ -93,7 +93,6 @@ class Newton : public SurfaceMethod {
   void finish(const Frame& frame, const Band& band);
   void drawInstances(const ScreenRect& band, int first, int count) const;
   void setArea(const ScreenRect& band) const;
-  ShaderFlags channelFlags(const Frame& frame) const;
 
   double tolerance_;
   int terms_, ambientCells_, iterations_;
@@ -141,12 +140,7 @@ void Newton::prepare(const MetaballField& field) {
 
 void Newton::addPasses(FrameGraph& graph, ShaderLibrary& shaders, const SurfaceTarget& target) {
   const GBufferRefs g = target.gbuffer;
-  std::vector<FrameGraph::Attachment> writes{{g.depth, FrameGraph::kDepth}};
-  for (const auto& [channel, location] :
-       {std::pair{g.albedo, 0}, std::pair{g.normal, 1}, std::pair{g.id, 2}, std::pair{g.distance, 3}}) {
-    if (channel.valid()) writes.push_back({channel, location});
-  }
-  graph.addPass(target.prefix + "surface", {g.depth}, writes,
+  graph.addPass(target.prefix + "surface", {g.depth}, attachmentsOf(g),
                 [this, &shaders, view = target.view, origin = target.origin, tile = target.tile,
                  shift = target.sampleShift, g](const PassContext& context) {
                   draw(context, shaders, {view, origin, tile, shift, g, {}});
@@ -287,15 +281,6 @@ void Newton::drawLimit(const Frame& frame, Band& band) {
   glDisable(GL_DEPTH_TEST);
 }
 
-ShaderFlags Newton::channelFlags(const Frame& frame) const {
-  ShaderFlags flags;
-  if (frame.context.isLive(frame.gbuffer.albedo)) flags.insert("ALBEDO");
-  if (frame.context.isLive(frame.gbuffer.normal)) flags.insert("NORMAL");
-  if (frame.context.isLive(frame.gbuffer.id)) flags.insert("ID");
-  if (frame.context.isLive(frame.gbuffer.distance)) flags.insert("DISTANCE");
-  return flags;
-}
-
 void Newton::drawHulls(const Frame& frame, const Band& band) {
   const GLuint none[4] = {0, 0, 0, 0};
   const GLfloat farthest = 0;
@@ -334,8 +319,8 @@ void Newton::finish(const Frame& frame, const Band& band) {
   glScissor(band.rect.x, band.rect.y, band.rect.width, band.rect.height);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_GREATER);
-  const unsigned program =
-      frame.shaders.program("surface/newton_finish.vert", "surface/newton_finish.frag", channelFlags(frame));
+  const unsigned program = frame.shaders.program("surface/newton_finish.vert", "surface/newton_finish.frag",
+                                                 channelFlags(frame.context, frame.gbuffer));
   glUseProgram(program);
   setArea(band.rect);
   drawFullscreen(program);

@@ -31,16 +31,11 @@ class Tiles : public SurfaceMethod {
 
 void Tiles::addPasses(FrameGraph& graph, ShaderLibrary& shaders, const SurfaceTarget& target) {
   const GBufferRefs g = target.gbuffer;
-  std::vector<FrameGraph::Attachment> writes{{g.depth, FrameGraph::kDepth}};
-  for (const auto& [channel, location] :
-       {std::pair{g.albedo, 0}, std::pair{g.normal, 1}, std::pair{g.id, 2}, std::pair{g.distance, 3}}) {
-    if (channel.valid()) writes.push_back({channel, location});
-  }
   const Tile& tile = target.tile;
   const tiles::TileTarget cast{
       target.view, target.origin, {tile.x, tile.y, tile.width, tile.height}, target.sampleShift};
   tiles::FieldTiles& caster = target.prefix.empty() ? camera_ : light_;
-  graph.addPass(target.prefix + "surface", {g.depth}, writes,
+  graph.addPass(target.prefix + "surface", {g.depth}, attachmentsOf(g),
                 [this, &shaders, &caster, cast, g](const PassContext& context) {
                   draw(context, shaders, caster, cast, g);
                 });
@@ -53,7 +48,6 @@ void Tiles::draw(const PassContext& context, ShaderLibrary& shaders, tiles::Fiel
   caster.cast(target, channels, planes_);
   const tiles::PixelArea& part = planes_.area;
   const int x = part.x - target.area.x, y = part.y - target.area.y;
-  ShaderFlags flags;
   std::vector<TextureLease> leases;
   // As large as the target, of which the part is a different one in every view.
   const auto bind = [&](const char* name, gl::TextureFormat format, unsigned unit, const void* data) {
@@ -62,28 +56,16 @@ void Tiles::draw(const PassContext& context, ShaderLibrary& shaders, tiles::Fiel
     glBindTextureUnit(unit, leases.back()->object.name());
   };
   bind("surface depth", gl::TextureFormat::r32f, 0, planes_.depth.data());
-  if (channels.albedo) {
-    flags.insert("ALBEDO");
-    bind("surface albedo", gl::TextureFormat::rgba8, 1, planes_.albedo.data());
-  }
-  if (channels.normal) {
-    flags.insert("NORMAL");
-    bind("surface normal", gl::TextureFormat::rg16, 2, planes_.normal.data());
-  }
-  if (channels.id) {
-    flags.insert("ID");
-    bind("surface id", gl::TextureFormat::r32ui, 3, planes_.id.data());
-  }
-  if (channels.distance) {
-    flags.insert("DISTANCE");
-    bind("surface distance", gl::TextureFormat::r32f, 4, planes_.distance.data());
-  }
+  if (channels.albedo) bind("surface albedo", gl::TextureFormat::rgba8, 1, planes_.albedo.data());
+  if (channels.normal) bind("surface normal", gl::TextureFormat::rg16, 2, planes_.normal.data());
+  if (channels.id) bind("surface id", gl::TextureFormat::r32ui, 3, planes_.id.data());
+  if (channels.distance) bind("surface distance", gl::TextureFormat::r32f, 4, planes_.distance.data());
   context.bindTarget();
   glEnable(GL_SCISSOR_TEST);
   glScissor(x, y, part.width, part.height);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_GREATER);
-  drawFullscreen(shaders.program("post/fullscreen.vert", "surface/tiles.frag", flags));
+  drawFullscreen(shaders.program("post/fullscreen.vert", "surface/tiles.frag", channelFlags(context, g)));
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_SCISSOR_TEST);
 }
