@@ -188,7 +188,7 @@ void Bezier::prepare(const MetaballField& field) {
 
   fieldUniforms_ = gl::Buffer::updatable(sizeof(FieldBlock));
   bezierUniforms_ = gl::Buffer::updatable(sizeof(BezierBlock));
-  statistics_.prepare();
+  statistics_.counts.prepare();
 }
 
 void Bezier::addPasses(FrameGraph& graph, ShaderLibrary& shaders, const SurfaceTarget& target) {
@@ -228,7 +228,7 @@ void Bezier::draw(const PassContext& context, ShaderLibrary& shaders, const View
   glBindBufferBase(GL_UNIFORM_BUFFER, 2, bezierUniforms_.object.name());
   balls_.bindStorage(0);
   spilled_.bindStorage(4);
-  statistics_.bindStorage(5);
+  statistics_.counts.bindStorage(5);
 
   for (const ScreenRect& rect : splitRect(frame.screen, mostPixels(list_)))
     drawRegion(frame, rect, list_, false);
@@ -501,7 +501,7 @@ std::vector<ResourceStats> Bezier::buffers() const {
   add("surface: instances", instances_.bytes());
   add("surface: lists", lists_.bytes());
   add("surface: pixels spilled", spilled_.bytes());
-  add("surface: control", control_.bytes() + seen_.bytes() + statistics_.bytes());
+  add("surface: control", control_.bytes() + seen_.bytes() + statistics_.counts.bytes());
   return out;
 }
 

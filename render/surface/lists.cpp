@@ -151,7 +151,7 @@ void Lists::prepare(const MetaballField& field) {
   listsUniforms_ = gl::Buffer::updatable(sizeof(ListsBlock));
   gathered_.reserve(4);
   control_.reserve(sizeof(Control));
-  statistics_.prepare();
+  statistics_.counts.prepare();
 }
 
 void Lists::addPasses(FrameGraph& graph, ShaderLibrary& shaders, const SurfaceTarget& target) {
@@ -239,7 +239,7 @@ void Lists::drawRegion(Frame& frame, const ScreenRect& rect) {
   heads_.bindStorage(2);
   gathered_.bindStorage(3);
   control_.bindStorage(4);
-  statistics_.bindStorage(5);
+  statistics_.counts.bindStorage(5);
   ballTexture_.bind(5);
   orderTexture_.bind(6);
   setUniforms(frame, rect, 0);
@@ -489,7 +489,8 @@ std::vector<ResourceStats> Lists::buffers() const {
   add("surface: balls", balls_.bytes() + ballTexture_.bytes() + orderTexture_.bytes());
   add("surface: nodes of lists", nodes_.bytes());
   add("surface: heads of lists", heads_.bytes());
-  add("surface: control", gathered_.bytes() + control_.bytes() + states_.bytes() + statistics_.bytes());
+  add("surface: control",
+      gathered_.bytes() + control_.bytes() + states_.bytes() + statistics_.counts.bytes());
   return out;
 }
 

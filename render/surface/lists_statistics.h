@@ -1,24 +1,22 @@
 #pragma once
 // What the method "lists" counts: some of it by its shaders, some beside them.
 
-#include "render/gl/storage.h"
-#include "render/render_stats.h"
+#include "render/surface/ray_counts.h"
 
 namespace meniscus {
 
-class ListsStatistics {
- public:
-  /// With the context current.
-  void prepare();
-  void bindStorage(unsigned binding) const { sums_.bindStorage(binding); }
+/// Sums of shaders/include/lists_trace.glsl.
+struct ListsCounts {
+  RayCounts common;
+  std::uint32_t looked, taken, unordered, longest;
+};
+
+struct ListsStatistics {
   /// What was counted since the last call; all counts start anew.
   SurfaceStats take();
-  std::uint64_t bytes() const { return sums_.bytes(); }
 
+  RayCountCopies<ListsCounts> counts;
   double ballsInView = 0, nodes = 0, mostOfPixel = 0, bands = 0, mostBytesPerPixel = 0, mostBytesPerBall = 0;
-
- private:
-  gl::Storage sums_;
 };
 
 }  // namespace meniscus

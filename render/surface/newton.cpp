@@ -3,7 +3,6 @@
 #include <glad/gl.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -12,6 +11,7 @@
 #include "render/surface/newton_field.h"
 #include "render/surface/peel_regions.h"
 #include "render/surface/projected_field.h"
+#include "render/surface/ray_counts.h"
 
 namespace meniscus {
 
@@ -48,11 +48,10 @@ struct HullInstance {
   glm::uvec4 lists;
 };
 
-// Of shaders/surface/newton_finish.frag.
-struct Sums {
-  std::uint32_t pixels, iterations, mostIterations, grazing, failed, found, pieces, unused;
+// Sums of shaders/include/sums.glsl, of which overflow stays zero.
+struct NewtonCounts {
+  RayCounts common;
 };
-constexpr std::size_t kSumCount = 64;
 
 class Newton : public SurfaceMethod {
  public:
@@ -102,7 +101,8 @@ class Newton : public SurfaceMethod {
   std::vector<float> coreShares_;
   NewtonField textures_;
   gl::Object vertexArray_;
-  gl::Storage instances_, sums_;
+  gl::Storage instances_;
+  RayCountCopies<NewtonCounts> counts_;
   gl::Buffer fieldUniforms_, newtonUniforms_;
   double hullsDrawn_ = 0, mostBytesPerPixel_ = 0;
 };
@@ -134,8 +134,7 @@ void Newton::prepare(const MetaballField& field) {
   glVertexArrayAttribBinding(name, location, 0);
   fieldUniforms_ = gl::Buffer::updatable(sizeof(FieldBlock));
   newtonUniforms_ = gl::Buffer::updatable(sizeof(NewtonBlock));
-  sums_.reserve(sizeof(Sums) * kSumCount);
-  sums_.zero();
+  counts_.prepare();
 }
 
 void Newton::addPasses(FrameGraph& graph, ShaderLibrary& shaders, const SurfaceTarget& target) {
@@ -204,7 +203,7 @@ void Newton::setUniforms(const View& view, const ProjectedField& projected, bool
   fieldUniforms_.update(&projected.block);
   glBindBufferBase(GL_UNIFORM_BUFFER, 1, fieldUniforms_.object.name());
   glBindBufferBase(GL_UNIFORM_BUFFER, 2, newtonUniforms_.object.name());
-  sums_.bindStorage(5);
+  counts_.bindStorage(5);
 }
 
 void Newton::drawBand(const Frame& frame, const ScreenRect& rect) {
@@ -331,23 +330,11 @@ void Newton::finish(const Frame& frame, const Band& band) {
 SurfaceStats Newton::takeStats() {
   SurfaceStats stats;
   stats.method = plain_ ? "newton (plain)" : "newton";
-  std::array<Sums, kSumCount> sums{};
-  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  sums_.read(sums.data(), sizeof sums);
-  sums_.zero();
-  double found = 0;
-  for (const Sums& s : sums) {
-    stats.pixels += s.pixels;
-    stats.pieces += s.pieces;
-    stats.iterations += s.iterations;
-    stats.mostIterations = std::max<std::uint64_t>(stats.mostIterations, s.mostIterations);
-    stats.grazing += s.grazing;
-    stats.notConverged += s.failed;
-    found += s.found;
-  }
+  double hits = 0;
+  for (const NewtonCounts& c : counts_.take(stats)) hits += c.common.hits;
   const double balls = static_cast<double>(field_->balls.size());
   stats.details = {
-      {"hits", found},
+      {"hits", hits},
       {"hulls drawn", hullsDrawn_},
       {"pairs that overlap", static_cast<double>(textures_.overlaps.others.size() / 2)},
       {"most bytes per ball", static_cast<double>(textures_.bytes() + instances_.bytes()) / balls},
@@ -359,7 +346,7 @@ SurfaceStats Newton::takeStats() {
 std::vector<ResourceStats> Newton::buffers() const {
   return {{"surface: balls", textures_.bytes()},
           {"surface: hulls", instances_.bytes()},
-          {"surface: sums", sums_.bytes()}};
+          {"surface: sums", counts_.bytes()}};
 }
 
 }  // namespace

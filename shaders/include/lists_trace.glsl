@@ -1,5 +1,7 @@
 // What both ways through a list share (lists_cast.frag, lists_walk.frag): their results and what they count.
 // Needs the other include/lists_*.glsl.
+#define MORE_SUMS uint looked, taken, unordered, longest;
+#include "include/sums.glsl"
 
 layout(std430, binding = 4) restrict buffer Control {
   uint uUnanswered;  // pixels to be done again, or to be gone on with
@@ -13,15 +15,6 @@ bool loopsAreEnded() {
   for (int i = 0; i < uLists.w; ++i) ++runs;  // at least 2; a uniform, so that the loop stays one
   return runs < uLists.w;
 }
-
-const int kSums = 64;
-struct Sums {
-  uint pixels, pieces, iterations, mostIterations, overflow, grazing, unfinished, hits;
-  uint looked, taken, unordered, longest;
-};
-layout(std430, binding = 5) restrict buffer Statistics {
-  Sums uSums[kSums];  // spread out, so that pixels seldom wait for each other
-};
 
 struct Trace {
   bool known;    // whether F > 0 where the ray begins
@@ -73,10 +66,6 @@ bool crossAt(inout Trace trace, ivec2 texel, uint head, SceneRay ray, Split plac
   return true;
 }
 #endif
-
-int sumsOf(ivec2 texel) {
-  return texel.x / 8 + 13 * (texel.y / 8) & (kSums - 1);
-}
 
 void count(ivec2 texel, Trace trace, bool finished) {
   int at = sumsOf(texel);

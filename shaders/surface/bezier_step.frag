@@ -10,6 +10,8 @@
 #include "include/bernstein.glsl"
 #include "include/bezier.glsl"
 #include "include/bezier_lists.glsl"
+#define MORE_SUMS uint events, solved, mostInPiece, longest;
+#include "include/sums.glsl"
 
 layout(binding = 0) uniform usampler2D tLastStep;
 layout(binding = 1) uniform usampler2D tLastKey;
@@ -33,15 +35,6 @@ layout(std430, binding = 2) restrict buffer Control {
 };
 layout(std430, binding = 4) restrict buffer Spilled {
   uint uSpilled[];  // of each pixel of the target: 1 if its list was too short
-};
-
-const int kSums = 64;
-struct Sums {
-  uint pixels, pieces, iterations, mostIterations, overflow, grazing, unfinished, events;
-  uint solved, mostInPiece, hits, longest;
-};
-layout(std430, binding = 5) restrict buffer Statistics {
-  Sums uSums[kSums];  // spread out, so that pixels seldom wait for each other
 };
 
 layout(std430, binding = 6) writeonly restrict buffer Blocks {
@@ -129,10 +122,6 @@ void storeHit(ivec2 texel, inout Pixel p, uint step, float offset) {
   p.status |= kHit;
   uLists[slot(texel, kPlace)] = step;
   uLists[slot(texel, kOffset)] = floatBitsToUint(offset);
-}
-
-int sumsOf(ivec2 texel) {
-  return texel.x / 8 + 13 * (texel.y / 8) & (kSums - 1);
 }
 
 // A pixel counts once it is finished; one that is going to be repaired, then.

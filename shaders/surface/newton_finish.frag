@@ -9,6 +9,7 @@
 #include "include/kernel.glsl"
 #include "include/newton.glsl"
 #include "include/newton_field.glsl"
+#include "include/sums.glsl"
 #include "include/gbuffer.glsl"
 
 layout(binding = 3) uniform sampler2D tProjected;
@@ -21,20 +22,15 @@ layout(binding = 8) uniform usampler2D tFailures;
 // those that may be active.
 layout(binding = 9) uniform usampler2D tLists;
 
-const int kSums = 64;
-layout(std430, binding = 5) restrict buffer Statistics {
-  uint uSums[kSums][8];  // pixels, iterations, most of one, grazing, failed, found; pieces; 0
-};
-
 void count(ivec2 texel, uint status, bool found) {
-  int at = texel.x / 8 + 13 * (texel.y / 8) & (kSums - 1);
+  int at = sumsOf(texel);
   uint iterations = status >> kStatusBits;
-  atomicAdd(uSums[at][0], 1u);
-  atomicAdd(uSums[at][1], iterations);
-  atomicMax(uSums[at][2], iterations);
-  if ((status & kGrazing) != 0u) atomicAdd(uSums[at][3], 1u);
-  if ((status & kFailed) != 0u && !found) atomicAdd(uSums[at][4], 1u);
-  if (found) atomicAdd(uSums[at][5], 1u);
+  atomicAdd(uSums[at].pixels, 1u);
+  atomicAdd(uSums[at].iterations, iterations);
+  atomicMax(uSums[at].mostIterations, iterations);
+  if ((status & kGrazing) != 0u) atomicAdd(uSums[at].grazing, 1u);
+  if ((status & kFailed) != 0u && !found) atomicAdd(uSums[at].unfinished, 1u);
+  if (found) atomicAdd(uSums[at].hits, 1u);
 }
 
 void main() {

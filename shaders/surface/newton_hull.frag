@@ -12,6 +12,7 @@
 #include "include/newton.glsl"
 #include "include/newton_field.glsl"
 #include "include/newton_roots.glsl"
+#include "include/sums.glsl"
 
 layout(location = 0) flat in vec4 vPixel;
 layout(location = 1) flat in vec4 vPlace;
@@ -31,11 +32,6 @@ layout(r32ui, binding = 0) restrict uniform uimage2D uStatus;
 #ifdef PLAIN
 layout(r32ui, binding = 1) restrict uniform uimage2D uFailures;  // bits of the nearest depth
 #endif
-
-const int kSums = 64;
-layout(std430, binding = 5) restrict buffer Statistics {
-  uint uSums[kSums][8];  // as in newton_finish.frag
-};
 
 #ifdef PLAIN
 Found newton(Line line, float from, float to, float support, inout Effort effort, out bool failed) {
@@ -177,7 +173,7 @@ void main() {
 #endif
   if (effort.iterations > 0) {
     imageAtomicAdd(uStatus, texel, uint(effort.iterations) << kStatusBits);
-    atomicAdd(uSums[texel.x / 8 + 13 * (texel.y / 8) & (kSums - 1)][6], uint(effort.pieces));
+    atomicAdd(uSums[sumsOf(texel)].pieces, uint(effort.pieces));
   }
   uint bits = (effort.unfinished ? kFailed : 0u) | (effort.grazing ? kGrazing : 0u);
   if (bits != 0u) mark(texel, bits);
