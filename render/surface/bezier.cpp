@@ -482,7 +482,7 @@ void Bezier::step(Frame& frame, const Region& region, int layer) {
 void Bezier::shade(Frame& frame, const Region& region) {
   frame.context.bindTarget();
   const ShaderFlags flags = channelFlags(frame.context, frame.gbuffer);
-  glUseProgram(frame.shaders.program("surface/bezier_surface.vert", "surface/bezier_surface.frag", flags));
+  glUseProgram(frame.shaders.program("surface/near_plane.vert", "surface/bezier_surface.frag", flags));
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_GREATER);
   for (const PeelCell& cell : region.cells) {

@@ -476,7 +476,7 @@ void Lists::shade(Frame& frame, const Region& region, const ScreenRect& band) {
   glDepthFunc(GL_GREATER);
   glEnable(GL_SCISSOR_TEST);
   glScissor(region.rect.x + band.x, region.rect.y + band.y, band.width, band.height);
-  drawFullscreen(frame.shaders.program("surface/lists_surface.vert", "surface/lists_surface.frag", flags));
+  drawFullscreen(frame.shaders.program("surface/near_plane.vert", "surface/lists_surface.frag", flags));
   glDisable(GL_SCISSOR_TEST);
   glDisable(GL_DEPTH_TEST);
 }

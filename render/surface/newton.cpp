@@ -258,7 +258,7 @@ void Newton::drawNear(const Frame& frame, Band& band) {
   glClearBufferfv(GL_COLOR, 0, zero);
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_ONE);
-  glUseProgram(frame.shaders.program("surface/newton_prepare.vert", "surface/newton_prepare.frag", {}));
+  glUseProgram(frame.shaders.program("surface/newton.vert", "surface/newton_prepare.frag", {}));
   drawInstances(band.rect, frame.hulls, frame.nearHulls);
   glDisable(GL_BLEND);
 }
@@ -274,8 +274,7 @@ void Newton::drawLimit(const Frame& frame, Band& band) {
   if (band.near) glBindTextureUnit(0, band.near->object.name());
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_GREATER);
-  glUseProgram(
-      frame.shaders.program("surface/newton_prepare.vert", "surface/newton_prepare.frag", {"CORES"}));
+  glUseProgram(frame.shaders.program("surface/newton.vert", "surface/newton_prepare.frag", {"CORES"}));
   drawInstances(band.rect, 0, frame.hulls);
   glDisable(GL_DEPTH_TEST);
 }
@@ -298,7 +297,7 @@ void Newton::drawHulls(const Frame& frame, const Band& band) {
   if (plain_) glBindImageTexture(1, band.failures->object.name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_R32UI);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_GREATER);
-  glUseProgram(frame.shaders.program("surface/newton_hull.vert", "surface/newton_hull.frag", flags));
+  glUseProgram(frame.shaders.program("surface/newton.vert", "surface/newton_hull.frag", flags));
   drawInstances(band.rect, 0, frame.hulls);
   glDisable(GL_DEPTH_TEST);
 }
@@ -318,7 +317,7 @@ void Newton::finish(const Frame& frame, const Band& band) {
   glScissor(band.rect.x, band.rect.y, band.rect.width, band.rect.height);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_GREATER);
-  const unsigned program = frame.shaders.program("surface/newton_finish.vert", "surface/newton_finish.frag",
+  const unsigned program = frame.shaders.program("surface/near_plane.vert", "surface/newton_finish.frag",
                                                  channelFlags(frame.context, frame.gbuffer));
   glUseProgram(program);
   setArea(band.rect);

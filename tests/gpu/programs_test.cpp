@@ -7,7 +7,10 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/error.h"
@@ -24,7 +27,16 @@ struct ProgramName {
   std::string vertex, fragment;
 };
 
-// Every fragment shader with the vertex shader of its stem, or the one of full-screen passes.
+// Fragment shaders that share a vertex shader with others.
+constexpr std::pair<std::string_view, std::string_view> kShared[] = {
+    {"surface/bezier_surface.frag", "surface/near_plane.vert"},
+    {"surface/lists_surface.frag", "surface/near_plane.vert"},
+    {"surface/newton_finish.frag", "surface/near_plane.vert"},
+    {"surface/newton_hull.frag", "surface/newton.vert"},
+    {"surface/newton_prepare.frag", "surface/newton.vert"}};
+
+// Every fragment shader with its vertex shader: the one of its stem, else the shared one, else that of
+// full-screen passes.
 std::vector<ProgramName> allPrograms() {
   const auto exists = [](const std::string& path) {
     return std::any_of(embeddedShaders().begin(), embeddedShaders().end(),
@@ -34,7 +46,10 @@ std::vector<ProgramName> allPrograms() {
   for (const EmbeddedShader& shader : embeddedShaders()) {
     if (!shader.path.ends_with(".frag")) continue;
     const std::string vertex = std::string(shader.path.substr(0, shader.path.rfind('.'))) + ".vert";
-    out.push_back({exists(vertex) ? vertex : "post/fullscreen.vert", std::string(shader.path)});
+    const auto* const shared = std::find_if(std::begin(kShared), std::end(kShared),
+                                            [&](const auto& pair) { return pair.first == shader.path; });
+    const std::string other(shared != std::end(kShared) ? shared->second : "post/fullscreen.vert");
+    out.push_back({exists(vertex) ? vertex : other, std::string(shader.path)});
   }
   return out;
 }

@@ -1,4 +1,8 @@
-// One instance for each ball that may be seen: the rectangle around its support. Needs include/newton.glsl.
+#version 450 core
+// One instance for each ball that may be seen: the rectangle around its support.
+#include "include/view.glsl"
+#include "include/ball_ray.glsl"
+#include "include/newton.glsl"
 
 layout(location = 0) in vec4 aBox;  // corners [pixels of the target]
 layout(location = 1) in vec4 aPixel;
