@@ -92,7 +92,7 @@ class Bezier : public SurfaceMethod {
     Tile tile;
     ScreenRect screen;
     ProjectedField projected;
-    ShaderFlags kernelFlags;
+    ShaderFlags flags;
     std::vector<bool> left;  // of each ball: whether culling left it anywhere
   };
   // What is being drawn of it.
@@ -111,8 +111,7 @@ class Bezier : public SurfaceMethod {
     bool measured = false;
   };
 
-  void draw(const PassContext& context, ShaderLibrary& shaders, const View& view, const glm::dvec3& origin,
-            const Tile& tile, glm::vec2 sampleShift, const GBufferRefs& gbuffer);
+  void draw(const PassContext& context, ShaderLibrary& shaders, const SurfaceTarget& target);
   std::int64_t mostPixels(int list) const;
   void drawRegion(Frame& frame, const ScreenRect& rect, int list, bool again);
   void setUniforms(const Frame& frame, const Region& region);
@@ -156,9 +155,7 @@ namespace {
 
 void Bezier::prepare(const MetaballField& field) {
   field_ = &field;
-  for (const Metaball& ball : field.balls)
-    coreShares_.push_back(
-        static_cast<float>(coreShare(field.kernel, field.level, static_cast<double>(ball.coefficient))));
+  coreShares_ = coreShares(field);
   culling_ = culling_ && field.allPositive();
 
   GLuint name = 0;
@@ -192,29 +189,23 @@ void Bezier::prepare(const MetaballField& field) {
 }
 
 void Bezier::addPasses(FrameGraph& graph, ShaderLibrary& shaders, const SurfaceTarget& target) {
-  const GBufferRefs g = target.gbuffer;
-  graph.addPass(target.prefix + "surface", {g.depth}, attachmentsOf(g),
-                [this, &shaders, view = target.view, origin = target.origin, tile = target.tile,
-                 shift = target.sampleShift,
-                 g](const PassContext& context) { draw(context, shaders, view, origin, tile, shift, g); });
+  graph.addPass(target.prefix + "surface", {target.gbuffer.depth}, attachmentsOf(target.gbuffer),
+                [this, &shaders, target](const PassContext& context) { draw(context, shaders, target); });
 }
 
-void Bezier::draw(const PassContext& context, ShaderLibrary& shaders, const View& view,
-                  const glm::dvec3& origin, const Tile& tile, glm::vec2 sampleShift,
-                  const GBufferRefs& gbuffer) {
+void Bezier::draw(const PassContext& context, ShaderLibrary& shaders, const SurfaceTarget& target) {
   Frame frame{context,
               shaders,
-              gbuffer,
-              view,
-              tile,
-              {0, 0, tile.width, tile.height},
-              projectField(*field_, coreShares_, view, origin, tile, sampleShift, BallOrder::depth),
-              {},
+              target.gbuffer,
+              target.view,
+              target.tile,
+              {0, 0, target.tile.width, target.tile.height},
+              projectField(*field_, coreShares_, target.view, target.origin, target.tile, target.sampleShift,
+                           BallOrder::depth),
+              kernelFlags(field_->kernel),
               {}};
   if (frame.projected.balls.empty()) return;
-  if (field_->kernel.shape == KernelShape::quartic) frame.kernelFlags.insert("KERNEL_QUARTIC");
-  if (field_->kernel.shape == KernelShape::power) frame.kernelFlags.insert("KERNEL_POWER");
-  if (!clipping_) frame.kernelFlags.insert("PLAIN");
+  if (!clipping_) frame.flags.insert("PLAIN");
   frame.left.assign(frame.projected.balls.size(), false);
 
   const std::uint64_t ballBytes = frame.projected.balls.size() * sizeof(ProjectedBall);
@@ -471,8 +462,7 @@ void Bezier::step(Frame& frame, const Region& region, int layer) {
   steps_.write(region.steps.data(), bytes);
   glVertexArrayVertexBuffer(stepArray_.name(), 0, steps_.name(), 0, sizeof(StepInstance));
   glBindVertexArray(stepArray_.name());
-  glUseProgram(
-      frame.shaders.program("surface/bezier_step.vert", "surface/bezier_step.frag", frame.kernelFlags));
+  glUseProgram(frame.shaders.program("surface/bezier_step.vert", "surface/bezier_step.frag", frame.flags));
   glUniform2f(0, static_cast<float>(region.rect.width), static_cast<float>(region.rect.height));
   glUniform2i(1, layer, region.measured ? 1 : 0);
   glScissor(0, 0, region.rect.width, region.rect.height);

@@ -137,12 +137,11 @@ namespace {
 
 void Lists::prepare(const MetaballField& field) {
   field_ = &field;
-  for (const Metaball& ball : field.balls) {
-    const auto coefficient = static_cast<double>(ball.coefficient);
-    coreShares_.push_back(static_cast<float>(coreShare(field.kernel, field.level, coefficient)));
-    walkAll_ = walkAll_ || std::abs(coefficient - field.level) < kNearMaximum * field.level;
-  }
-  walkAll_ = walkAll_ && exact_;
+  coreShares_ = coreShares(field);
+  walkAll_ =
+      exact_ && std::any_of(field.balls.begin(), field.balls.end(), [&](const Metaball& ball) {
+        return std::abs(static_cast<double>(ball.coefficient) - field.level) < kNearMaximum * field.level;
+      });
   culling_ = culling_ && field.allPositive();
   GLuint name = 0;
   glCreateVertexArrays(1, &name);  // without attributes
@@ -184,12 +183,7 @@ void Lists::sort(Frame& frame, const SurfaceTarget& target) {
   frame.projected = projectField(*field_, coreShares_, target.view, target.origin, target.tile,
                                  target.sampleShift, BallOrder::distance);
   const ProjectedField& p = frame.projected;
-  if (exact_) {
-    if (field_->kernel.shape == KernelShape::quartic) frame.flags.insert("KERNEL_QUARTIC");
-    if (field_->kernel.shape == KernelShape::power) frame.flags.insert("KERNEL_POWER");
-  } else {
-    frame.flags.insert("CUBIC");
-  }
+  frame.flags = exact_ ? kernelFlags(field_->kernel) : ShaderFlags{"CUBIC"};
   if (frame.translucent()) frame.flags.insert("LAYERS");
   frame.scale = static_cast<float>(0.45 / std::max(p.reach, 1e-30));
 

@@ -110,9 +110,7 @@ class Newton : public SurfaceMethod {
 void Newton::prepare(const MetaballField& field) {
   field_ = &field;
   culls_ = !plain_ && field.allPositive();
-  for (const Metaball& ball : field.balls)
-    coreShares_.push_back(
-        static_cast<float>(coreShare(field.kernel, field.level, static_cast<double>(ball.coefficient))));
+  coreShares_ = coreShares(field);
   textures_.prepare(field, terms_, ambientCells_, plain_);
 
   GLuint name = 0;
@@ -138,21 +136,21 @@ void Newton::prepare(const MetaballField& field) {
 }
 
 void Newton::addPasses(FrameGraph& graph, ShaderLibrary& shaders, const SurfaceTarget& target) {
-  const GBufferRefs g = target.gbuffer;
-  graph.addPass(target.prefix + "surface", {g.depth}, attachmentsOf(g),
-                [this, &shaders, view = target.view, origin = target.origin, tile = target.tile,
-                 shift = target.sampleShift, g](const PassContext& context) {
-                  draw(context, shaders, {view, origin, tile, shift, g, {}});
-                });
+  graph.addPass(target.prefix + "surface", {target.gbuffer.depth}, attachmentsOf(target.gbuffer),
+                [this, &shaders, target](const PassContext& context) { draw(context, shaders, target); });
 }
 
 void Newton::draw(const PassContext& context, ShaderLibrary& shaders, const SurfaceTarget& target) {
   const ProjectedField projected = projectField(*field_, coreShares_, target.view, target.origin, target.tile,
                                                 target.sampleShift, BallOrder::depth);
   if (projected.balls.empty()) return;
-  Frame frame{context, shaders, target.gbuffer, {0, 0, target.tile.width, target.tile.height}, 0, 0, {}};
-  if (field_->kernel.shape == KernelShape::quartic) frame.kernel.insert("KERNEL_QUARTIC");
-  if (field_->kernel.shape == KernelShape::power) frame.kernel.insert("KERNEL_POWER");
+  Frame frame{context,
+              shaders,
+              target.gbuffer,
+              {0, 0, target.tile.width, target.tile.height},
+              0,
+              0,
+              kernelFlags(field_->kernel)};
   uploadInstances(frame, projected, target.view);
   setUniforms(target.view, projected, frame.nearHulls > 0);
   for (const ScreenRect& rect : splitRect(frame.screen, kBandPixels)) drawBand(frame, rect);

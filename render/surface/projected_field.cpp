@@ -204,6 +204,26 @@ ProjectedField Projector::project(BallOrder order) const {
 
 }  // namespace
 
+std::vector<float> coreShares(const MetaballField& field) {
+  std::vector<float> shares;
+  shares.reserve(field.balls.size());
+  float coefficient = 0, share = 0;  // of the ball before: most are alike
+  for (const Metaball& ball : field.balls) {
+    if (ball.coefficient != coefficient) {
+      coefficient = ball.coefficient;
+      share = static_cast<float>(coreShare(field.kernel, field.level, static_cast<double>(coefficient)));
+    }
+    shares.push_back(share);
+  }
+  return shares;
+}
+
+ShaderFlags kernelFlags(const Kernel& kernel) {
+  if (kernel.shape == KernelShape::quartic) return {"KERNEL_QUARTIC"};
+  if (kernel.shape == KernelShape::power) return {"KERNEL_POWER"};
+  return {};
+}
+
 ProjectedField projectField(const MetaballField& field, const std::vector<float>& coreShares,
                             const View& view, const glm::dvec3& origin, const Tile& tile,
                             glm::vec2 sampleShift, BallOrder order) {

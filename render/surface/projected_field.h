@@ -10,6 +10,7 @@
 
 #include "core/metaball_field.h"
 #include "core/view.h"
+#include "render/shader_library.h"
 #include "render/view_block.h"
 
 namespace meniscus {
@@ -55,7 +56,13 @@ struct ProjectedField {
   double reach = 0;  ///< no place on a ray where a ball is met is farther from the plane [Å]
 };
 
-/// coreShares: coreShare() of each ball.
+/// coreShare() of each ball.
+std::vector<float> coreShares(const MetaballField& field);
+
+/// Flags of shaders/include/field.glsl and kernel.glsl.
+ShaderFlags kernelFlags(const Kernel& kernel);
+
+/// coreShares: of the field.
 ProjectedField projectField(const MetaballField& field, const std::vector<float>& coreShares,
                             const View& view, const glm::dvec3& origin, const Tile& tile,
                             glm::vec2 sampleShift, BallOrder order);
