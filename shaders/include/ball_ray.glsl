@@ -17,6 +17,24 @@ struct BallProjection {
   vec4 eye;  // xyz: from the centre to the eye, if the ray is taken from there; w: squared radius of the core
 };
 
+// Textures hold numbers of balls in rows of so many (render/surface/ball_texture.cpp, newton_field.cpp).
+const uint kBallsPerRow = 1024u;
+
+// The first texel of a ball that has `texels` of them.
+ivec2 ballTexel(uint ball, uint texels) {
+  return ivec2(texels * (ball % kBallsPerRow), ball / kBallsPerRow);
+}
+
+// From a texture with ProjectedBall of render/surface/projected_field.h: four texels.
+BallProjection fetchProjection(sampler2D balls, uint ball) {
+  ivec2 at = ballTexel(ball, 4u);
+  BallProjection p;
+  p.pixel = texelFetch(balls, at, 0);
+  p.place = texelFetch(balls, at + ivec2(1, 0), 0);
+  p.eye = texelFetch(balls, at + ivec2(2, 0), 0);
+  return p;
+}
+
 struct SceneRay {
   vec2 pixel;
   vec3 direction;  // unit
@@ -63,4 +81,14 @@ float placeBetween(Split b, Split a) {
   precise float near = a.lo - b.lo;
   precise float sum = far + near;
   return sum;
+}
+
+// The place on the ray that a value of the depth buffer stands for, which is not 0.
+float placeOfDepth(SceneRay ray, float depth) {
+  return (uPlane.x - viewPoint(uView, ray.pixel, depth).z) * ray.stretch;
+}
+
+// So far behind it all is hidden for certain, whatever rounding did.
+float slackOfDepth(float place) {
+  return 1e-5 * (abs(place) + uView.depth.z - uView.depth.w);
 }

@@ -41,8 +41,6 @@ uint firstStep(SceneRay ray) {
 // The first step behind what the depth buffer holds.
 uint hiddenFrom(SceneRay ray, float depth) {
   if (!(depth > 0.0)) return uint(kLastStep);
-  float z = viewPoint(uView, ray.pixel, depth).z;
-  float place = (uPlane.x - z) * ray.stretch;
-  float range = uView.depth.z - uView.depth.w;
-  return stepAt(makeSplit(place, 0.0), 1e-5 * (abs(place) + range));
+  float place = placeOfDepth(ray, depth);
+  return stepAt(makeSplit(place, 0.0), slackOfDepth(place));
 }

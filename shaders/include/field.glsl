@@ -18,15 +18,11 @@ layout(std430, binding = 0) readonly restrict buffer Balls {
 // The same without colours and ids: software drivers read vectors from textures several times as fast as
 // numbers from buffers.
 layout(binding = 5) uniform sampler2D tBalls;
-const uint kBallsPerRow = 1024u;
 
 Ball fetchBall(uint index) {
-  ivec2 at = ivec2(4u * (index % kBallsPerRow), index / kBallsPerRow);
   Ball ball;
-  ball.projection.pixel = texelFetch(tBalls, at, 0);
-  ball.projection.place = texelFetch(tBalls, at + ivec2(1, 0), 0);
-  ball.projection.eye = texelFetch(tBalls, at + ivec2(2, 0), 0);
-  vec2 rest = texelFetch(tBalls, at + ivec2(3, 0), 0).xy;
+  ball.projection = fetchProjection(tBalls, index);
+  vec2 rest = texelFetch(tBalls, ballTexel(index, 4u) + ivec2(3, 0), 0).xy;
   ball.coefficient = rest.x;
   ball.inverseR2 = rest.y;
   ball.color = 0u;

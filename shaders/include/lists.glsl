@@ -23,7 +23,7 @@ const uint kUnanswered = 0x20000000u;  // to be done again
 layout(binding = 6) uniform sampler2D tOrder;
 
 vec4 orderOf(uint ball, int which) {
-  return texelFetch(tOrder, ivec2(3u * (ball % 1024u) + uint(which), ball / 1024u), 0);
+  return texelFetch(tOrder, ballTexel(ball, 3u) + ivec2(which, 0), 0);
 }
 
 // By how much a distance along the ray exceeds the height of the eye, less the ray's place there.

@@ -5,7 +5,6 @@
 layout(binding = 0) uniform usampler2D tBalls;  // two texels each, by rank: centre, 1 / R^2; q, colour, id, 0
 layout(binding = 1) uniform usampler2D tOthers;  // the lists of ranks
 layout(binding = 2) uniform sampler3D tAmbient;
-const uint kBallsPerRow = 1024u;
 const uint kOthersPerRow = 4096u;
 
 struct Other {
@@ -30,11 +29,11 @@ uint otherRank(uint at) {
 }
 
 vec3 centerOf(uint rank) {
-  return uintBitsToFloat(texelFetch(tBalls, ivec2(2u * (rank % kBallsPerRow), rank / kBallsPerRow), 0).xyz);
+  return uintBitsToFloat(texelFetch(tBalls, ballTexel(rank, 2u), 0).xyz);
 }
 
 Other fetchOther(Line line, uint rank) {
-  ivec2 at = ivec2(2u * (rank % kBallsPerRow), rank / kBallsPerRow);
+  ivec2 at = ballTexel(rank, 2u);
   uvec4 a = texelFetch(tBalls, at, 0), b = texelFetch(tBalls, at + ivec2(1, 0), 0);
   Other o;
   precise vec3 offset = uintBitsToFloat(a.xyz) - line.center;

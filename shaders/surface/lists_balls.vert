@@ -17,11 +17,11 @@ layout(location = 0) uniform ivec2 uFirst;  // the first, and the step to the ne
 
 void main() {
   uint ball = uint(uFirst.x + uFirst.y * gl_InstanceID);
-  ivec2 at = ivec2(4u * (ball % 1024u), ball / 1024u);
-  vPixel = texelFetch(tBalls, at, 0);
-  vPlace = texelFetch(tBalls, at + ivec2(1, 0), 0);
-  vEye = texelFetch(tBalls, at + ivec2(2, 0), 0);
-  vShare = texelFetch(tBalls, at + ivec2(3, 0), 0).xy;
+  BallProjection projection = fetchProjection(tBalls, ball);
+  vPixel = projection.pixel;
+  vPlace = projection.place;
+  vEye = projection.eye;
+  vShare = texelFetch(tBalls, ballTexel(ball, 4u) + ivec2(3, 0), 0).xy;
   vBall = ball;
 #ifdef CORES
   vec4 box = orderOf(ball, 1);

@@ -11,6 +11,6 @@ void main() {
   float depth = texelFetch(tDepth, texel + uRegion.xy, 0).r;
   if (!(depth > 0.0)) discard;
   SceneRay ray = sceneRay(vec2(texel + uRegion.xy) + 0.5 + uView.tile.xy);
-  float place = (uPlane.x - viewPoint(uView, ray.pixel, depth).z) * ray.stretch;
-  gl_FragDepth = depthOfPlace(place + 1e-5 * (abs(place) + uView.depth.z - uView.depth.w));
+  float place = placeOfDepth(ray, depth);
+  gl_FragDepth = depthOfPlace(place + slackOfDepth(place));
 }

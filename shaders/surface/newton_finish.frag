@@ -44,19 +44,14 @@ void main() {
   if (!found) {
     if (uTerms.w == 0 || (status & kFailed) == 0u) discard;
     float depth = uintBitsToFloat(texelFetch(tFailures, texel, 0).x);
-    Split failed = makeSplit((uPlane.x - viewPoint(uView, ray.pixel, depth).z) * ray.stretch, 0.0);
+    Split failed = makeSplit(placeOfDepth(ray, depth), 0.0);
     writeSurface(depth, -ray.direction, 0xFF00FFu, 1u, distanceAlong(ray, failed));
     return;
   }
   --rank;
-  ivec2 projected = ivec2(4u * (rank % kBallsPerRow), rank / kBallsPerRow);
-  BallProjection ball;
-  ball.pixel = texelFetch(tProjected, projected, 0);
-  ball.place = texelFetch(tProjected, projected + ivec2(1, 0), 0);
-  ball.eye = texelFetch(tProjected, projected + ivec2(2, 0), 0);
-  BallRay b = ballOnRay(ball, ray);
+  BallRay b = ballOnRay(fetchProjection(tProjected, rank), ray);
   float along = texelFetch(tAt, texel, 0).x;
-  uvec4 lists = texelFetch(tLists, ivec2(rank % kBallsPerRow, rank / kBallsPerRow), 0);
+  uvec4 lists = texelFetch(tLists, ballTexel(rank, 1u), 0);
   Line line;
   line.center = centerOf(rank);
   line.nearest = toModel(b.nearest);

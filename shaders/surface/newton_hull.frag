@@ -55,12 +55,7 @@ Found newton(Line line, float from, float to, float support, inout Effort effort
 #else
 // Where the ray is in one of the smaller balls, relative to the hull's; the same numbers as in its own hull.
 vec2 chordOf(uint rank, SceneRay ray, Split middle) {
-  ivec2 at = ivec2(4u * (rank % kBallsPerRow), rank / kBallsPerRow);
-  BallProjection ball;
-  ball.pixel = texelFetch(tProjected, at, 0);
-  ball.place = texelFetch(tProjected, at + ivec2(1, 0), 0);
-  ball.eye = texelFetch(tProjected, at + ivec2(2, 0), 0);
-  BallRay b = ballOnRay(ball, ray);
+  BallRay b = ballOnRay(fetchProjection(tProjected, rank), ray);
   if (!(b.halfChord2 > 0.0)) return vec2(1.0, -1.0);
   float halfChord = sqrt(b.halfChord2), place = placeBetween(middle, b.middle);
   return vec2(place - halfChord, place + halfChord);
@@ -137,9 +132,8 @@ void main() {
 #ifndef PLAIN
   float depth = texelFetch(tLimit, texel, 0).x;
   if (depth > 0.0) {
-    float z = viewPoint(uView, ray.pixel, depth).z, place = (uPlane.x - z) * ray.stretch;
-    float slack = 1e-5 * (abs(place) + uView.depth.z - uView.depth.w);
-    to = min(to, placeBetween(b.middle, makeSplit(place, slack)));
+    float place = placeOfDepth(ray, depth);
+    to = min(to, placeBetween(b.middle, makeSplit(place, slackOfDepth(place))));
   }
 #endif
   if (!(from < to)) discard;
