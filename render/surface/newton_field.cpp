@@ -13,7 +13,7 @@ namespace meniscus {
 
 namespace {
 
-// As in shaders/include/ball_ray.glsl and newton_field.glsl.
+// As in shaders/include/ball_ray.glsl and newton_balls.glsl.
 constexpr int kBallsPerRow = 1024, kOthersPerRow = 4096;
 
 // A texture of as many whole rows as `items` need; `items` grows to fill them.

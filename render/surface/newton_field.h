@@ -20,7 +20,7 @@ class NewtonField {
   void prepare(const MetaballField& field, int terms, int ambientCells, bool activeSmaller);
   /// Of each ball by rank, as `projected` has it; balls that are not in it are met by no ray.
   void uploadProjected(const ProjectedField& projected);
-  /// To the texture units of shaders/include/newton_field.glsl and what includes it.
+  /// To the texture units of shaders/include/newton_balls.glsl, newton_field.glsl and what includes them.
   void bind() const;
   std::uint64_t bytes() const;
 

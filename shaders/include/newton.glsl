@@ -16,10 +16,9 @@ layout(location = 0) uniform vec4 uArea;
 
 // Bits of a pixel's status; above them its iterations.
 const uint kTouched = 1u;  // its ray meets a support
-const uint kFound = 2u;    // a hit was written
-const uint kFailed = 4u;   // an iteration ended without its tolerance
-const uint kGrazing = 8u;  // a tangency could not be told from a crossing
-const int kStatusBits = 4;
+const uint kFailed = 2u;   // an iteration ended without its tolerance
+const uint kGrazing = 4u;  // a tangency could not be told from a crossing
+const int kStatusBits = 3;
 
 vec3 toModel(vec3 v) {
   return v.x * uTurn[0].xyz + v.y * uTurn[1].xyz + v.z * uTurn[2].xyz;

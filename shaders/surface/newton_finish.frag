@@ -6,9 +6,8 @@
 #include "include/ball_ray.glsl"
 #include "shared/metaball.glsl"
 #include "include/surface_point.glsl"
-#include "include/kernel.glsl"
 #include "include/newton.glsl"
-#include "include/newton_field.glsl"
+#include "include/newton_balls.glsl"
 #include "include/sums.glsl"
 #include "include/gbuffer.glsl"
 

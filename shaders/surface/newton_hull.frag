@@ -10,6 +10,7 @@
 #include "include/surface_point.glsl"
 #include "include/kernel.glsl"
 #include "include/newton.glsl"
+#include "include/newton_balls.glsl"
 #include "include/newton_field.glsl"
 #include "include/newton_roots.glsl"
 #include "include/sums.glsl"
