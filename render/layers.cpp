@@ -5,17 +5,17 @@
 #include <cstring>
 
 #include "core/shared_math.h"
+#include "render/srgb.h"
 
 namespace meniscus {
 
 namespace {
 
-// sRGB (IEC 61966-2-1) to linear light, for each value of 8 bits.
+// For each value of 8 bits.
 std::array<float, 256> linearLight() {
   std::array<float, 256> table{};
   for (std::size_t i = 0; i < table.size(); ++i) {
-    const double c = static_cast<double>(i) / 255.0;
-    table[i] = static_cast<float>(c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
+    table[i] = static_cast<float>(linearFromSrgb(static_cast<double>(i) / 255.0));
   }
   return table;
 }

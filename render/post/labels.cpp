@@ -8,6 +8,7 @@
 #include <glm/vec4.hpp>
 
 #include "core/error.h"
+#include "render/srgb.h"
 
 namespace meniscus {
 
@@ -31,16 +32,6 @@ struct Shown {
   const LabelSprite* sprite;
   LabelPlace place;
 };
-
-double linearFromByte(unsigned value) {
-  const double c = value / 255.0;
-  return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
-}
-
-glm::vec4 linearColor(Rgb color) {
-  return glm::vec4(glm::dvec4(linearFromByte(color >> 16 & 255), linearFromByte(color >> 8 & 255),
-                              linearFromByte(color & 255), 1.0));
-}
 
 // Where a label is seen; nothing if it is not.
 bool place(const LabelSprite& sprite, const View& view, LabelPlace& out) {
@@ -123,8 +114,8 @@ void LabelBuffers::set(const std::vector<LabelSprite>& sprites, const LabelColor
 TextureRef addLabels(FrameGraph& graph, LabelBuffers& labels, ShaderLibrary& shaders,
                      const GBufferRefs& gbuffer, const Tile& tile) {
   const LabelBlock block{{tile.x, tile.y, tile.width, tile.height},
-                         linearColor(labels.colors_.text),
-                         linearColor(labels.colors_.seam)};
+                         linearColor(labels.colors_.text, 1),
+                         linearColor(labels.colors_.seam, 1)};
   labels.uniforms_.update(&block);
   const TextureRef target = graph.create("labels", {gl::TextureFormat::rgba16, tile.width, tile.height});
   graph.addPass("labels", {gbuffer.depth}, {{target, 0}, {gbuffer.depth, FrameGraph::kTestedDepth}},

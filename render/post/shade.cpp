@@ -3,12 +3,12 @@
 #include <glad/gl.h>
 
 #include <array>
-#include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 
 #include "core/error.h"
 #include "render/post/fullscreen.h"
+#include "render/srgb.h"
 
 namespace meniscus {
 
@@ -26,21 +26,12 @@ glm::vec4 towardsLight(const DirectionalLight& light) {
   return glm::vec4(glm::dvec4(towards, light.intensity));
 }
 
-double linearFromSrgb(double c) {
-  return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
-}
-
 std::array<glm::vec4, 256> linearTable() {
   std::array<glm::vec4, 256> table{};
   for (std::size_t i = 0; i < table.size(); ++i) {
     table[i].x = static_cast<float>(linearFromSrgb(static_cast<double>(i) / 255.0));
   }
   return table;
-}
-
-glm::vec4 linearColor(Rgb color, double alpha) {
-  const auto channel = [&](int shift) { return linearFromSrgb(((color >> shift) & 0xFF) / 255.0); };
-  return glm::vec4(glm::dvec4(channel(16), channel(8), channel(0), alpha));
 }
 
 glm::vec4 fogOf(const FogSettings& fog) {
