@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 #include <utility>
 
 #include "core/error.h"
@@ -45,13 +46,20 @@ class Mesh : public SurfaceMethod {
  private:
   void upload(const SurfaceMesh& mesh);
   void draw(const PassContext& context, ShaderLibrary& shaders, const GBufferRefs& g, bool fromOutside) const;
-  bool isSeenFromOutside(const View& view, const glm::dvec3& origin) const;
+  bool isSeenFromOutside(const View& view, const glm::dvec3& origin);
 
   double spacing_;
   const MetaballField* field_ = nullptr;
   gl::Texture vertices_;
   std::vector<Chunk> chunks_;
   SurfaceStats stats_;
+  // What isSeenFromOutside() found last: the samples and tiles of a picture ask alike.
+  struct Seen {
+    View view;
+    glm::dvec3 origin;
+    bool fromOutside;
+  };
+  std::optional<Seen> seen_;
 };
 
 void Mesh::prepare(const MetaballField& field) {
@@ -118,11 +126,15 @@ void Mesh::addPasses(FrameGraph& graph, ShaderLibrary& shaders, const SurfaceTar
 }
 
 // Whether no ray begins in a ball: then it meets the front of a triangle first.
-bool Mesh::isSeenFromOutside(const View& view, const glm::dvec3& origin) const {
-  return std::none_of(field_->balls.begin(), field_->balls.end(), [&](const Metaball& ball) {
-    const glm::dvec3 center = view.rotation * ((origin - view.pivot) + glm::dvec3(ball.center));
-    return center.z + static_cast<double>(ball.support) >= view.nearZ;
-  });
+bool Mesh::isSeenFromOutside(const View& view, const glm::dvec3& origin) {
+  if (seen_ && seen_->view == view && seen_->origin == origin) return seen_->fromOutside;
+  const bool fromOutside =
+      std::none_of(field_->balls.begin(), field_->balls.end(), [&](const Metaball& ball) {
+        const glm::dvec3 center = view.rotation * ((origin - view.pivot) + glm::dvec3(ball.center));
+        return center.z + static_cast<double>(ball.support) >= view.nearZ;
+      });
+  seen_ = Seen{view, origin, fromOutside};
+  return fromOutside;
 }
 
 void Mesh::draw(const PassContext& context, ShaderLibrary& shaders, const GBufferRefs& g,
