@@ -158,6 +158,7 @@ struct Renderer::Impl {
   EffectsChoice effects;
   KeptShadowMap keptShadowMap;
   std::shared_ptr<const Primitives> primitives = std::make_shared<Primitives>();
+  std::shared_ptr<const Primitives> withoutSurfaces;  // the same; made when it is wanted first
   RenderStats stats;
 
   explicit Impl(const RendererOptions& o)
@@ -296,6 +297,7 @@ Renderer::~Renderer() = default;
 void Renderer::setPrimitives(std::shared_ptr<const Primitives> primitives) {
   requireFinite(*primitives);
   impl_->primitives = std::move(primitives);
+  impl_->withoutSurfaces.reset();
   impl_->surfaces.takeStats(impl_->stats.surfaces);
   impl_->surfaces.clear();
   impl_->quadrics.clear();
@@ -372,13 +374,14 @@ void Renderer::Impl::drawOcclusion(Frame& frame) {
   double spent = 0;
   {
     Stopwatch watch(spent);
-    std::shared_ptr<const Primitives> occluders = primitives;
-    if (frame.translucent) {  // what is translucent occludes nothing
+    if (frame.translucent && !withoutSurfaces) {
       auto opaque = std::make_shared<Primitives>(*primitives);
-      opaque->surfaces.clear();
-      occluders = std::move(opaque);
+      opaque->surfaces = {};
+      withoutSurfaces = std::move(opaque);
     }
-    occlusionBuffers.set(frame.view, drawOcclusionMaps(*occluders, frame.view, frame.settings.occlusion));
+    // What is translucent occludes nothing.
+    const Primitives& occluders = frame.translucent ? *withoutSurfaces : *primitives;
+    occlusionBuffers.set(frame.view, drawOcclusionMaps(occluders, frame.view, frame.settings.occlusion));
   }
   auto pass = std::find_if(stats.passes.begin(), stats.passes.end(),
                            [](const PassStats& s) { return s.name == "occlusion maps"; });
