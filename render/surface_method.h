@@ -36,7 +36,8 @@ struct SurfaceTarget {
   glm::vec2 sampleShift;  ///< of the rays within their pixels
   GBufferRefs gbuffer;    ///< channels that are not valid are not written; what is in it hides and is hidden
   std::string prefix;     ///< before the passes' names
-  /// If valid, this is written instead of the G-buffer, whose depth still hides; only methods that are
+  /// If valid, this is written instead of the G-buffer, whose depth still hides: all of its pixels, even
+  /// where there is no surface, since nobody clears them. Only methods that are
   /// SurfaceMethodInfo::translucent are asked for it.
   SurfaceLayerRefs layers = {};
   SurfaceLayerRefs layersBefore = {};  ///< of other surfaces, to be joined, if valid

@@ -65,8 +65,8 @@ SurfaceLayerRefs SurfacePasses::addLayers(FrameGraph& graph, ShaderLibrary& shad
   for (const auto& method : methods_) {
     target.layersBefore = target.layers;
     for (TextureRef& layer : target.layers.of)
-      layer =
-          graph.create("surface layer", {gl::TextureFormat::rgba32ui, target.tile.width, target.tile.height});
+      layer = graph.create("surface layer",
+                           {gl::TextureFormat::rgba32ui, target.tile.width, target.tile.height}, Clear::none);
     method->addPasses(graph, shaders, target);
   }
   return target.layers;
