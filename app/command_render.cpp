@@ -109,7 +109,7 @@ int RenderRun::run() {
     finishInput(inputs_[i], std::move(prepared));
   }
   progress_.clear();
-  if (sceneWriter_ && report_.failures.empty()) sceneWriter_->write();
+  if (sceneWriter_ && report_.failures.empty() && !interrupted()) sceneWriter_->write();
   finishReport();
   for (const std::string& failure : report_.failures) std::fprintf(stderr, "meniscus: %s\n", failure.c_str());
   if (failedInputs_ > 1)
@@ -245,6 +245,7 @@ void RenderRun::drawAll(const Input& input, Prepared& prepared) {
     Picture frame = frames > 1 ? picture : std::move(picture);  // its molecules go once they are primitives
     if (frames > 1) turn(frame, static_cast<int>(i % frames), options_, pattern_);
     drawing = frame.output;
+    if (sceneWriter_) sceneWriter_->add(frame);
     if (film) {
       drawer_.drawTo(std::move(frame), *film, fmt::format("{} {}/{}", options_.output, i + 1, count));
       continue;
@@ -263,7 +264,6 @@ void RenderRun::drawOne(Picture picture, const Prepared& prepared, std::size_t c
   ManifestEntry entry{picture.input, picture.output, prepared.key, count, 0, prepared.made.unsupported, ""};
   try {
     drawer_.watch();
-    if (sceneWriter_) sceneWriter_->add(picture);
     drawer_.draw(std::move(picture));
   } catch (const GraphicsError&) {
     throw;

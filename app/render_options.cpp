@@ -451,6 +451,8 @@ void requireConsistent(const CLI::App& app, RenderOptions& o) {
   requireFilmNames(o, OutputPattern(o.output));
   if (o.resume && o.manifest.empty())
     throw UsageError("--resume: needs the --manifest of the run that is to be continued");
+  if (o.resume && !o.saveScene.empty())
+    throw UsageError("--save-scene: needs every picture, also those that are done; leave out --resume");
   requireSettingsConsistent(o);
   if (!o.output.empty() && !isFilm(o.output) && imageTypeOf(o.output) == ImageType::exr &&
       app.count("--depth") > 0)

@@ -3,6 +3,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <ctime>
 #include <glm/gtc/quaternion.hpp>
@@ -151,9 +152,11 @@ Json rootNode(const Picture& picture, const std::filesystem::path& sceneFile) {
 }  // namespace
 
 void SceneWriter::add(const Picture& picture) {
-  std::string key = stemOf(picture.output);
+  const std::string stem = stemOf(picture.output);
+  std::string key = stem;
   const auto taken = [&](const auto& root) { return root.first == key; };
-  if (std::any_of(roots_.begin(), roots_.end(), taken)) key += fmt::format("-{}", roots_.size() + 1);
+  for (std::size_t n = roots_.size() + 1; std::any_of(roots_.begin(), roots_.end(), taken); ++n)
+    key = fmt::format("{}-{}", stem, n);
   roots_.emplace_back(key, rootNode(picture, path_));
 }
 

@@ -24,6 +24,13 @@ class Scenes : public CliTest {
     for (std::string line; std::getline(lines, line);) entries.push_back(nlohmann::json::parse(line));
     return entries;
   }
+  /// Stands in for ffmpeg, whether it is there or not: a film is its frames as raw pixels.
+  Environment rawFilms() const {
+    std::filesystem::create_directory(folder_ / "bin");
+    writeFile(folder_ / "bin/ffmpeg", "#!/bin/sh\nfor last; do :; done\nexec cat > \"${last#file:}\"\n");
+    std::filesystem::permissions(folder_ / "bin/ffmpeg", std::filesystem::perms::owner_all);
+    return {{"PATH", (folder_ / "bin").string() + ":/usr/bin:/bin"}};
+  }
 };
 
 const Words kSmall{"--size", "64x48", "--samples", "1"};
@@ -61,6 +68,30 @@ TEST_F(Scenes, severalPicturesAreSavedAsStates) {
   for (const char* model : {"1", "2", "10"})
     EXPECT_EQ(readFile(folder_ / (std::string(model) + ".png")),
               readFile(folder_ / ("again-" + std::string(model) + ".png")));
+}
+
+TEST_F(Scenes, aFilmIsSavedAsStates) {
+  const Environment path = rawFilms();
+  expectSuccess(run(with({"render", "-q", molecule("c60.pdb"), "--turntable", "3", "-o", "film.gif",
+                          "--save-scene", "a.mvsj"},
+                         kSmall),
+                    path));
+  expectSuccess(render({"--scene", "a.mvsj", "-o", "{state}.png"}));
+  expectSuccess(render(with({molecule("c60.pdb"), "--turntable", "3", "-o", "f{frame}.png"}, kSmall)));
+  const Names states{"film.png", "film-2.png", "film-3.png"};
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_EQ(readPicture(folder_ / states[i]).pixels,
+              readPicture(folder_ / ("f0000" + std::to_string(i + 1) + ".png")).pixels);
+}
+
+// With --resume, pictures that are done are not made again, so they cannot be written.
+TEST_F(Scenes, aResumedRunSavesNoScene) {
+  writeFile(folder_ / "a.mvsj", "an older one");
+  expectError(render(with({molecule("c60.pdb"), "-o", "a.png", "--save-scene", "a.mvsj", "--manifest",
+                           "m.jsonl", "--resume"},
+                          kSmall)),
+              ExitCode::badUsage, {"--save-scene", "leave out --resume"});
+  EXPECT_EQ(readFile(folder_ / "a.mvsj"), "an older one");
 }
 
 TEST_F(Scenes, strictMakesWhatIsNotSupportedAnError) {
@@ -166,12 +197,8 @@ TEST_F(Scenes, aTurntableTurnsAboutTheVerticalAxis) {
               ExitCode::badUsage, {"--turntable", "{frame}"});
 }
 
-// Whether ffmpeg is there or not, stands in for it: what reaches it is every frame, as raw pixels.
 TEST_F(Scenes, aFilmIsEveryFrameInFfmpegsHands) {
-  std::filesystem::create_directory(folder_ / "bin");
-  writeFile(folder_ / "bin/ffmpeg", "#!/bin/sh\nfor last; do :; done\nexec cat > \"${last#file:}\"\n");
-  std::filesystem::permissions(folder_ / "bin/ffmpeg", std::filesystem::perms::owner_all);
-  const Environment path{{"PATH", (folder_ / "bin").string() + ":/usr/bin:/bin"}};
+  const Environment path = rawFilms();
   const Words film =
       with({"render", "-q", molecule("1d3z.pdb.gz"), "--model", "all", "-o", "film.mp4"}, kSmall);
   expectSuccess(run(film, path));
