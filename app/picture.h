@@ -16,8 +16,9 @@ struct Picture {
   std::string input, output;  ///< names of files; output: empty if only a mesh is wanted
   std::string exported;       ///< the mesh of its surfaces; empty = none
   OutputPlace place;          ///< what `output` was made from
-  RenderOptions options;      ///< size, samples, light, effects and format; not what is drawn
-  Scene scene;                ///< with its camera; the light comes from the options
+  StructureFormat format = StructureFormat::mmcif;  ///< of `input`, if it is no scene
+  RenderOptions options;  ///< size, samples, light, effects and format; not what is drawn
+  Scene scene;            ///< with its camera; the light comes from the options
   std::shared_ptr<const Primitives> primitives;  ///< of the scene, if they are there already
   std::string source;                            ///< recorded in the file: what it shows
   std::string command;                           ///< and how it was made

@@ -53,6 +53,7 @@ class StructurePictures {
   const std::string& file_;
   const RenderOptions& options_;
   Preparation made_;
+  StructureFormat format_ = StructureFormat::mmcif;
 };
 
 Preparation StructurePictures::make(std::string bytes) {
@@ -96,6 +97,7 @@ void StructurePictures::addPicture(Scene scene, int model) {
   if (!options_.output.empty()) picture.output = OutputPattern(options_.output).nameFor(file_, picture.place);
   if (!options_.exportMesh.empty())
     picture.exported = OutputPattern(options_.exportMesh).nameFor(file_, picture.place);
+  picture.format = format_;
   picture.options = options_;
   picture.scene = std::move(scene);
   // The names of folders and of the output are left out: they say nothing about the picture, and the same
@@ -112,6 +114,7 @@ Molecules StructurePictures::readMolecules(std::string bytes) {
     const Timed timed(made_.parseSeconds);
     structure = readStructureBytes(std::move(bytes), file_, options_.structure, logger);
   }
+  format_ = structure.format;
   Molecules molecules;
   for (Molecule& molecule : structure.models) {
     if (drawsBonds()) {

@@ -96,16 +96,18 @@ void applyOptions(Molecule& m, const StructureOptions& options) {
   keepAtoms(m, keep);
 }
 
+/// Sets `format` once it is known.
 ReadModels readModels(std::string bytes, const std::filesystem::path& path, const StructureOptions& options,
-                      Oddities& oddities) {
+                      Oddities& oddities, StructureFormat& format) {
   const bool binary = isBinaryCif(bytes);
   std::string text = binary ? std::string() : textOf(std::move(bytes), path);
   const ModelChoice choice{options.model, options.allModels, options.modelIndex};
   try {
     if (binary) text = textFromBinaryCif(bytes);
     mendLineEnds(text, oddities);
-    const StructureKind kind = detectKind(text, extensionOf(path));
-    return kind == StructureKind::pdb ? readPdb(text, choice, oddities) : readMmcif(text, choice, oddities);
+    const bool pdb = detectKind(text, extensionOf(path)) == StructureKind::pdb;
+    format = pdb ? StructureFormat::pdb : binary ? StructureFormat::binaryCif : StructureFormat::mmcif;
+    return pdb ? readPdb(text, choice, oddities) : readMmcif(text, choice, oddities);
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", path.string(), error.what()));
   } catch (const UsageError& error) {
@@ -130,8 +132,8 @@ StructureFile readStructure(const std::filesystem::path& path, const StructureOp
 StructureFile readStructureBytes(std::string bytes, const std::filesystem::path& path,
                                  const StructureOptions& options, Logger& logger) {
   Oddities oddities;
-  ReadModels read = readModels(std::move(bytes), path, options, oddities);
   StructureFile file;
+  ReadModels read = readModels(std::move(bytes), path, options, oddities, file.format);
   file.modelCount = read.modelCount;
   for (Molecule& molecule : read.models) {
     if (molecule.name.empty()) molecule.name = stemOf(path);

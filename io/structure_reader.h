@@ -32,7 +32,10 @@ struct StructureOptions {
   std::string select;  ///< gemmi CID selection ("//A/10-20/CA[C]"); empty = everything
 };
 
+enum class StructureFormat : std::uint8_t { pdb, mmcif, binaryCif };
+
 struct StructureFile {
+  StructureFormat format = StructureFormat::mmcif;
   std::vector<Molecule> models;  ///< the chosen ones, in file order; never empty, each with at least one atom
   int modelCount = 0;            ///< how many the file has
 };

@@ -12,9 +12,7 @@
 #include "app/commands.h"
 #include "app/output_name.h"
 #include "app/scene/settings.h"
-#include "io/file_bytes.h"
 #include "io/output_file.h"
-#include "io/structure_kind.h"
 
 namespace meniscus {
 namespace {
@@ -48,6 +46,10 @@ Json cameraNode(const Picture& picture) {
               {{"orientation", {q.w, q.x, q.y, q.z}},
                {"target", listOf(camera.target)},
                {"distance", camera.distance}});
+}
+
+const char* formatName(StructureFormat format) {
+  return format == StructureFormat::pdb ? "pdb" : format == StructureFormat::mmcif ? "mmcif" : "bcif";
 }
 
 /// The type that comes nearest, for programs that do not know ours.
@@ -134,9 +136,7 @@ Json rootNode(const Picture& picture, const std::filesystem::path& sceneFile) {
 
   const std::filesystem::path folder = std::filesystem::absolute(sceneFile).parent_path();
   const std::filesystem::path input = std::filesystem::absolute(picture.input);
-  const std::string text = readText(picture.input);
-  const bool pdb = detectKind(text, "") == StructureKind::pdb;
-  Json parse = node("parse", {{"format", pdb ? "pdb" : "mmcif"}});
+  Json parse = node("parse", {{"format", formatName(picture.format)}});
   parse["children"] = structureNodes(picture);
   Json download = node("download", {{"url", input.lexically_proximate(folder).string()}});
   download["children"] = {std::move(parse)};

@@ -1,6 +1,7 @@
 // `meniscus render --scene`, batches and films: the program as scripts use it.
 
 #include <csignal>
+#include <cstring>
 #include <fstream>
 #include <sstream>
 
@@ -92,6 +93,63 @@ TEST_F(Scenes, aResumedRunSavesNoScene) {
                           kSmall)),
               ExitCode::badUsage, {"--save-scene", "leave out --resume"});
   EXPECT_EQ(readFile(folder_ / "a.mvsj"), "an older one");
+}
+
+/// A BinaryCIF file of two atoms.
+std::string binaryCif() {
+  using Json = nlohmann::json;
+  const auto bytes = [](const auto& values, int type) {
+    std::vector<std::uint8_t> out(values.size() * sizeof values[0]);
+    std::memcpy(out.data(), values.data(), out.size());
+    const Json encoding{{"kind", "ByteArray"}, {"type", type}};
+    return std::pair{Json::binary(out), encoding};
+  };
+  Json columns = Json::array();
+  const auto add = [&](const char* name, const Json& data, const Json& encoding) {
+    columns.push_back(
+        {{"name", name}, {"data", {{"data", data}, {"encoding", {encoding}}}}, {"mask", nullptr}});
+  };
+  const auto addNumbers = [&](const char* name, const std::vector<float>& values) {
+    const auto [data, encoding] = bytes(values, 32);
+    add(name, data, encoding);
+  };
+  const auto addText = [&](const char* name, const std::string& text) {  // the same for both
+    const auto [indices, each] = bytes(std::vector<std::int8_t>{0, 0}, 1);
+    const auto [offsets, place] =
+        bytes(std::vector<std::int32_t>{0, static_cast<std::int32_t>(text.size())}, 3);
+    add(name, indices,
+        {{"kind", "StringArray"},
+         {"dataEncoding", {each}},
+         {"stringData", text},
+         {"offsetEncoding", {place}},
+         {"offsets", offsets}});
+  };
+  addNumbers("Cartn_x", {-1, 2});
+  addNumbers("Cartn_y", {0, 1});
+  addNumbers("Cartn_z", {0, 0});
+  addText("type_symbol", "C");
+  addText("label_atom_id", "C1");
+  addText("label_comp_id", "LIG");
+  addText("auth_asym_id", "A");
+  addText("auth_seq_id", "1");
+  const Json atoms{{"name", "_atom_site"}, {"rowCount", 2}, {"columns", columns}};
+  const Json block{{"header", "TEST"}, {"categories", {atoms}}};
+  const std::vector<std::uint8_t> packed =
+      Json::to_msgpack({{"version", "0.3.0"}, {"encoder", "test"}, {"dataBlocks", {block}}});
+  return {packed.begin(), packed.end()};
+}
+
+TEST_F(Scenes, aSavedSceneNamesTheFormatOfItsFile) {
+  writeFile(folder_ / "a.bcif", binaryCif());
+  const std::pair<std::string, const char*> files[] = {
+      {"a.bcif", "bcif"}, {molecule("1a8o.cif.gz"), "mmcif"}, {molecule("c60.pdb"), "pdb"}};
+  for (const auto& [file, format] : files) {
+    expectSuccess(render(with({file, "-o", "a.png", "--save-scene", "a.mvsj"}, kSmall)));
+    const nlohmann::json scene = nlohmann::json::parse(readFile(folder_ / "a.mvsj"));
+    EXPECT_EQ(scene["root"]["children"][0]["children"][0]["params"]["format"], format);
+    expectSuccess(render({"--scene", "a.mvsj", "-o", "b.png"}));
+    EXPECT_EQ(readFile(folder_ / "a.png"), readFile(folder_ / "b.png")) << file;
+  }
 }
 
 TEST_F(Scenes, strictMakesWhatIsNotSupportedAnError) {
