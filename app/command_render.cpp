@@ -142,7 +142,12 @@ void RenderRun::checkBeforeReading() const {
   }
   if (!options_.exportMesh.empty()) {
     requireDistinctOutputs(exportPattern_, files);
-    if (exportPattern_.namesModel() != pattern_.namesModel())
+    const bool filmOfModels = isFilm(options_.output) && options_.structure.allModels;
+    if (filmOfModels && !exportPattern_.namesModel())
+      throw UsageError(
+          fmt::format("--export: '{}' is one name for the meshes of all models; put {{model}} into it",
+                      options_.exportMesh));
+    if (!filmOfModels && exportPattern_.namesModel() != pattern_.namesModel())
       throw UsageError(
           "--export: put {model} into the names of the picture and of the mesh, or into neither");
     const auto isSurface = [](const ShownApart& s) { return s.representation == Representation::surface; };
@@ -243,14 +248,15 @@ void RenderRun::drawAll(const Input& input, Prepared& prepared) {
     Picture& picture = made.pictures[i / frames];
     if (frames > 1 && !picture.primitives) picture.primitives = drawer_.primitivesOf(picture);
     Picture frame = frames > 1 ? picture : std::move(picture);  // its molecules go once they are primitives
-    if (frames > 1) turn(frame, static_cast<int>(i % frames), options_, pattern_);
-    drawing = frame.output;
+    if (i % frames > 0) frame.exported.clear();                 // one mesh, however often it turns
+    if (options_.turntable > 0) turn(frame, static_cast<int>(i % frames), options_, pattern_);
+    drawing = frame.result();
     if (sceneWriter_) sceneWriter_->add(frame);
     if (film) {
       drawer_.drawTo(std::move(frame), *film, fmt::format("{} {}/{}", options_.output, i + 1, count));
       continue;
     }
-    if (!(options_.resume && manifest_->isDone(prepared.key, frame.output)))
+    if (!(options_.resume && manifest_->isDone(prepared.key, frame.result())))
       drawOne(std::move(frame), prepared, count, start);
     start = Clock::now();
   }
@@ -261,7 +267,7 @@ void RenderRun::drawAll(const Input& input, Prepared& prepared) {
 
 void RenderRun::drawOne(Picture picture, const Prepared& prepared, std::size_t count,
                         Clock::time_point start) {
-  ManifestEntry entry{picture.input, picture.output, prepared.key, count, 0, prepared.made.unsupported, ""};
+  ManifestEntry entry{picture.input, picture.result(), prepared.key, count, 0, prepared.made.unsupported, ""};
   try {
     drawer_.watch();
     drawer_.draw(std::move(picture));

@@ -22,6 +22,9 @@ struct Picture {
   std::shared_ptr<const Primitives> primitives;  ///< of the scene, if they are there already
   std::string source;                            ///< recorded in the file: what it shows
   std::string command;                           ///< and how it was made
+
+  /// The file that comes of it: the picture's, or the mesh's if there is no picture.
+  const std::string& result() const { return output.empty() ? exported : output; }
 };
 
 /// What became of one input: its pictures, ready to be drawn, and what is to be said about it.

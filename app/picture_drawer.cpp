@@ -94,10 +94,7 @@ void PictureDrawer::draw(Picture picture) {
     imageOptions = imageOptionsFor(picture);
     image = ImageFile::create(picture.output, imageOptions);
   }
-  if (!picture.exported.empty()) {
-    picture.primitives = primitivesOf(picture);
-    exportMesh(picture);
-  }
+  exportMesh(picture);
   if (!image) return;
   TimedSink sink(*image, report_.encodeSeconds);
   render(picture, sink, {imageOptions.format, imageOptions.layers},
@@ -115,7 +112,9 @@ void PictureDrawer::draw(Picture picture) {
 }
 
 // Of each object that is drawn so, in the order of the scene.
-void PictureDrawer::exportMesh(const Picture& picture) {
+void PictureDrawer::exportMesh(Picture& picture) {
+  if (picture.exported.empty()) return;
+  if (!picture.primitives) picture.primitives = primitivesOf(picture);
   const Timed timed(report_.meshSeconds);
   MeshOptions mesh;
   mesh.spacing = picture.options.meshSpacing.value_or(mesh.spacing);
@@ -134,6 +133,7 @@ void PictureDrawer::exportMesh(const Picture& picture) {
 }
 
 void PictureDrawer::drawTo(Picture picture, RowSink& sink, const std::string& label) {
+  exportMesh(picture);
   TimedSink timed(sink, report_.encodeSeconds);
   render(picture, timed, {PixelFormat::rgba8}, label);
 }

@@ -22,9 +22,9 @@ class PictureDrawer {
   /// Called now and then while a picture is drawn; what it throws ends the picture, of which nothing is left.
   std::function<void()> watch;
 
-  /// Writes the picture's file. Throws Error; then nothing is written.
+  /// Writes the picture's files. Throws Error; then nothing is written.
   void draw(Picture picture);
-  /// The same, its rows to `sink` as 8-bit sRGB; progress says `label`.
+  /// The same, but the picture's rows to `sink` as 8-bit sRGB; progress says `label`.
   void drawTo(Picture picture, RowSink& sink, const std::string& label);
   /// What the picture's scene becomes, for several pictures of it.
   std::shared_ptr<const Primitives> primitivesOf(const Picture& picture);
@@ -32,7 +32,7 @@ class PictureDrawer {
   void finishReport();
 
  private:
-  void exportMesh(const Picture& picture);
+  void exportMesh(Picture& picture);
   void render(Picture& picture, RowSink& sink, const PixelLayout& layout, const std::string& label);
   Renderer& renderer();
 

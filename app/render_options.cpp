@@ -428,6 +428,8 @@ void addOtherOptions(CLI::App& app, RenderOptions& o) {
 
 // With a scene, what is drawn and from where is the scene's business.
 void requireOnlyPictureOptions(const RenderOptions& o) {
+  if (!o.exportMesh.empty())
+    throw UsageError("--export: is for structure files; of a --scene there are only pictures");
   for (const auto& [name, value] : o.given)
     if (!findSetting(SettingPlace::picture, name))
       throw UsageError(
@@ -441,6 +443,10 @@ void requireConsistent(const CLI::App& app, RenderOptions& o) {
     throw UsageError("no output; add the picture's name, as in -o picture.png");
   if (std::filesystem::is_directory(o.output)) requireWritable(o.output);  // says that it is a folder
   if (!o.exportMesh.empty()) requireMeshName("--export", o.exportMesh);
+  if (o.turntable > 0 && o.output.empty())
+    throw UsageError("--turntable: a mesh does not turn; add the pictures' name, as in -o '{frame}.png'");
+  if (OutputPattern(o.exportMesh).namesFrame())
+    throw UsageError("--export: {frame} numbers pictures; the mesh of a --turntable has one name");
   if (o.meshSpacing && o.surface.method == "mesh") o.surface.parameters["spacing"] = *o.meshSpacing;
   if (o.meshSpacing && o.surface.method != "mesh" && o.exportMesh.empty())
     throw UsageError("--mesh-spacing: there is no mesh; add --surface-method mesh or --export FILE.ply");

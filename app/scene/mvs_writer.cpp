@@ -152,7 +152,7 @@ Json rootNode(const Picture& picture, const std::filesystem::path& sceneFile) {
 }  // namespace
 
 void SceneWriter::add(const Picture& picture) {
-  const std::string stem = stemOf(picture.output);
+  const std::string stem = stemOf(picture.result());
   std::string key = stem;
   const auto taken = [&](const auto& root) { return root.first == key; };
   for (std::size_t n = roots_.size() + 1; std::any_of(roots_.begin(), roots_.end(), taken); ++n)

@@ -255,6 +255,44 @@ TEST_F(Scenes, aTurntableTurnsAboutTheVerticalAxis) {
               ExitCode::badUsage, {"--turntable", "{frame}"});
 }
 
+TEST_F(Scenes, aTurntableOfOnePictureNumbersIt) {
+  expectSuccess(render(with({molecule("c60.pdb"), "-o", "f{frame}.png", "--turntable", "1"}, kSmall)));
+  EXPECT_EQ(folder_.names(), (Names{"f00001.png"}));
+}
+
+TEST_F(Scenes, filmsAndTurntablesAreExported) {
+  const Environment path = rawFilms();
+  const Words surface = with({"render", "-q", molecule("c60.pdb"), "--representation", "surface",
+                              "--mesh-spacing", "1", "--turntable", "2"},
+                             kSmall);
+  expectSuccess(run(with(surface, {"-o", "a.mp4", "--export", "a.ply"}), path));
+  expectSuccess(run(with(surface, {"-o", "b{frame}.png", "--export", "b.ply"})));
+  EXPECT_EQ(folder_.names(), (Names{"a.mp4", "a.ply", "b.ply", "b00001.png", "b00002.png", "bin"}));
+  EXPECT_EQ(readFile(folder_ / "a.ply"), readFile(folder_ / "b.ply"));
+  expectError(run(with(surface, {"-o", "c{frame}.png", "--export", "c{frame}.ply"})), ExitCode::badUsage,
+              {"--export", "{frame}"});
+  expectError(run(with(surface, {"--export", "c.ply"})), ExitCode::badUsage, {"--turntable", "-o"});
+  expectError(run({"render", molecule("1d3z.pdb.gz"), "--model", "all", "--representation", "surface", "-o",
+                   "c.mp4", "--export", "c.ply"},
+                  path),
+              ExitCode::badUsage, {"--export", "'c.ply'", "{model}"});
+  expectError(run({"render", "--scene", "c.mvsj", "--export", "c.ply"}), ExitCode::badUsage,
+              {"--export", "only pictures"});
+}
+
+TEST_F(Scenes, aMeshByItselfIsResumed) {
+  const Words command{molecule("c60.pdb"), "--representation", "surface",    "--mesh-spacing", "1",
+                      "--export",          "{stem}.ply",       "--manifest", "m.jsonl",        "--resume"};
+  expectSuccess(render(command));
+  expectSuccess(render(command));
+  ASSERT_EQ(manifest("m.jsonl").size(), 1u);
+  EXPECT_EQ(manifest("m.jsonl")[0]["output"], "c60.ply");
+  std::filesystem::remove(folder_ / "c60.ply");
+  expectSuccess(render(command));
+  EXPECT_EQ(manifest("m.jsonl").size(), 2u);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "c60.ply"));
+}
+
 TEST_F(Scenes, aFilmIsEveryFrameInFfmpegsHands) {
   const Environment path = rawFilms();
   const Words film =
