@@ -170,8 +170,9 @@ Prepared RenderRun::prepare(const Input& input) const {
   try {
     const auto isDone = [&](const std::string& content) {
       prepared.key =
-          contentHash(fmt::format("{}\n{}\n{}\n{}\n{}", version(), content, options_.pictureOptions,
-                                  options_.turntable, pattern_.nameFor(input.file, {})));
+          contentHash(fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}", version(), content, options_.pictureOptions,
+                                  options_.turntable, options_.framesPerSecond,
+                                  pattern_.nameFor(input.file, {}), exportPattern_.nameFor(input.file, {})));
       prepared.done = options_.resume && manifest_->allDone(prepared.key);
       return prepared.done;
     };

@@ -280,6 +280,24 @@ TEST_F(Scenes, filmsAndTurntablesAreExported) {
               {"--export", "only pictures"});
 }
 
+// What decides what the files hold, or which there are, decides whether they are done.
+TEST_F(Scenes, fpsAndExportAreNotDoneByARunWithoutThem) {
+  const Environment path = rawFilms();
+  const auto lines = [&](const Words& more) {
+    expectSuccess(run(with(with({"render", "-q", molecule("c60.pdb"), "--representation", "surface",
+                                 "--turntable", "1", "-o", "a.mp4", "--manifest", "m.jsonl", "--resume"},
+                                kSmall),
+                           more),
+                      path));
+    return manifest("m.jsonl").size();
+  };
+  EXPECT_EQ(lines({}), 1u);
+  EXPECT_EQ(lines({}), 1u);
+  EXPECT_EQ(lines({"--fps", "10"}), 2u);
+  EXPECT_EQ(lines({"--export", "a.ply"}), 3u);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "a.ply"));
+}
+
 TEST_F(Scenes, aMeshByItselfIsResumed) {
   const Words command{molecule("c60.pdb"), "--representation", "surface",    "--mesh-spacing", "1",
                       "--export",          "{stem}.ply",       "--manifest", "m.jsonl",        "--resume"};
