@@ -52,6 +52,21 @@ struct Prepared {
   std::exception_ptr error;  ///< instead of pictures
 };
 
+/// What the frames of a film have in common. Throws InputError if the pictures of an input are of several
+/// sizes.
+ImageSize frameSize(const std::string& input, const std::vector<Picture>& pictures) {
+  const ImageSize size = pictures.front().options.size;
+  for (const Picture& picture : pictures) {
+    const ImageSize other = picture.options.size;
+    if (other != size)
+      throw InputError(
+          fmt::format("'{}': its states are pictures of {}x{} and of {}x{} pixels, which make no film; give "
+                      "--size",
+                      input, size.width, size.height, other.width, other.height));
+  }
+  return size;
+}
+
 class RenderRun {
  public:
   explicit RenderRun(const RenderOptions& options)
@@ -235,7 +250,8 @@ void RenderRun::drawAll(const Input& input, Prepared& prepared) {
   std::unique_ptr<FilmFile> film;
   const std::string filmName = made.pictures.front().output;
   if (isFilm(options_.output))
-    film = std::make_unique<FilmFile>(filmName, made.pictures.front().options.size, options_.framesPerSecond);
+    film =
+        std::make_unique<FilmFile>(filmName, frameSize(input.file, made.pictures), options_.framesPerSecond);
   Clock::time_point start =
       Clock::now() - std::chrono::microseconds(std::llround(1000 * prepared.milliseconds));
   std::string drawing;  // name of the output

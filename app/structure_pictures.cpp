@@ -75,7 +75,8 @@ Preparation StructurePictures::make(std::string bytes) {
   }
   std::set<int> numbers;
   for (const auto& molecule : molecules) numbers.insert(molecule->model);
-  if (numbers.size() < molecules.size())
+  const bool namesModel = pattern.namesModel() || OutputPattern(options_.exportMesh).namesModel();
+  if (namesModel && numbers.size() < molecules.size())
     throw InputError(
         fmt::format("'{}': has several models of the same number, so {{model}} cannot tell them apart; "
                     "choose one with --model",

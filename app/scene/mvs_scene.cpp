@@ -8,6 +8,7 @@
 #include <map>
 #include <utility>
 
+#include "app/film.h"
 #include "app/output_name.h"
 #include "app/run_report.h"
 #include "app/scene/color_names.h"
@@ -459,7 +460,7 @@ void StateReader::addObject(SceneObject object, ReadStructure& structure) {
 
 Preparation scenePictures(const std::string& name, MvsFile& file, const RenderOptions& options) {
   const OutputPattern pattern(options.output);
-  if (file.states().size() > 1 && !pattern.namesState())
+  if (file.states().size() > 1 && !pattern.namesState() && !isFilm(options.output))
     throw InputError(
         fmt::format("{}: holds {} states, which would all be written to '{}'; put {{state}} into it", name,
                     file.states().size(), options.output));

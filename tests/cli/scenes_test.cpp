@@ -83,6 +83,16 @@ TEST_F(Scenes, aFilmIsSavedAsStates) {
   for (std::size_t i = 0; i < 3; ++i)
     EXPECT_EQ(readPicture(folder_ / states[i]).pixels,
               readPicture(folder_ / ("f0000" + std::to_string(i + 1) + ".png")).pixels);
+
+  expectSuccess(run({"render", "-q", "--scene", "a.mvsj", "-o", "again.gif"}, path));
+  EXPECT_EQ(readFile(folder_ / "again.gif").size(), 3u * 64 * 48 * 4);
+  EXPECT_EQ(readFile(folder_ / "again.gif"), readFile(folder_ / "film.gif"));
+  expectError(render({"--scene", "a.mvsj", "-o", "again.png"}), ExitCode::badInput, {"3 states", "{state}"});
+  nlohmann::json scene = nlohmann::json::parse(readFile(folder_ / "a.mvsj"));
+  scene["snapshots"][1]["root"]["custom"]["meniscus"]["size"] = "32x48";
+  writeFile(folder_ / "b.mvsj", scene.dump());
+  expectError(run({"render", "-q", "--scene", "b.mvsj", "-o", "b.gif"}, path), ExitCode::badInput,
+              {"'b.mvsj'", "64x48", "32x48", "--size"});
 }
 
 // With --resume, pictures that are done are not made again, so they cannot be written.
