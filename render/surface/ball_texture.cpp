@@ -15,7 +15,7 @@ void BallTexture::upload(const void* numbers, std::size_t count) {
   const std::size_t most =
       static_cast<std::size_t>(gl::queryLimits().textureSize) * static_cast<std::size_t>(kBallsPerRow);
   if (count > most)
-    throw GraphicsError(fmt::format(
+    throw InputError(fmt::format(
         "{} balls of a surface are in view, of which a texture of this driver holds {}; draw fewer atoms",
         count, most));
   const int balls = static_cast<int>(count), rows = (balls + kBallsPerRow - 1) / kBallsPerRow;

@@ -13,7 +13,7 @@ class BallTexture {
   /// So many texels of four floats for each ball; 1024 balls (kBallsPerRow of shaders/include/ball_ray.glsl)
   /// in a row.
   explicit BallTexture(int texelsPerBall) : texels_(texelsPerBall) {}
-  /// Numbers of `count` balls one after the other. Throws GraphicsError if the driver has no room for them.
+  /// Numbers of `count` balls one after the other. Throws InputError if the driver has no room for them.
   void upload(const void* numbers, std::size_t count);
   void bind(unsigned unit) const;
   std::uint64_t bytes() const { return texture_.object ? texture_.bytes() : 0; }

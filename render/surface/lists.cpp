@@ -348,7 +348,7 @@ std::vector<std::pair<ScreenRect, std::int64_t>> Lists::bandsOf(const ScreenRect
       for (int x = 0; x < region.width; ++x) {
         const std::int64_t here = sumOf(row + static_cast<std::size_t>(x), 1);
         if (here > most)
-          throw GraphicsError(
+          throw InputError(
               fmt::format("surface method lists: {} balls lie behind one pixel, whose list takes more than "
                           "the {:.4g} MiB that "
                           "this driver or --surface-option memory=N allow; use --surface-method tiles",
@@ -455,7 +455,7 @@ void Lists::walk(Frame& frame, const Region& region) {
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
     control_.read(&control, sizeof control);
     if (control.exhausted > 0)
-      throw GraphicsError(fmt::format(
+      throw InputError(fmt::format(
           "surface method lists: more balls overlap in {} pixels than the driver's loops can go through; use "
           "--surface-method tiles",
           control.exhausted));

@@ -1,5 +1,7 @@
 // `meniscus render --scene`, batches and films: the program as scripts use it.
 
+#include <fmt/format.h>
+
 #include <csignal>
 #include <cstring>
 #include <fstream>
@@ -60,6 +62,17 @@ TEST_F(Scenes, aSavedSceneGivesTheSameBytes) {
     expectSuccess(render({"--scene", "a.mvsj", "-o", "b.png"}));
     EXPECT_EQ(readFile(folder_ / "a.png"), readFile(folder_ / "b.png")) << command[2];
   }
+}
+
+TEST_F(Scenes, aSavedSceneKnowsTheSpacingOfItsMesh) {
+  const Words mesh = with({molecule("c60.pdb"), "--representation", "surface", "--surface-method", "mesh",
+                           "--mesh-spacing", "+1.5"},
+                          kSmall);
+  expectSuccess(render(with(mesh, {"-o", "a.png", "--save-scene", "a.mvsj"})));
+  expectSuccess(render({"--scene", "a.mvsj", "-o", "b.png"}));
+  EXPECT_EQ(readFile(folder_ / "a.png"), readFile(folder_ / "b.png"));
+  expectSuccess(render(with(mesh, {"--mesh-spacing", "0.5", "-o", "fine.png"})));
+  EXPECT_NE(readPicture(folder_ / "a.png").pixels, readPicture(folder_ / "fine.png").pixels);
 }
 
 TEST_F(Scenes, severalPicturesAreSavedAsStates) {
@@ -244,6 +257,24 @@ TEST_F(Scenes, anInterruptFinishesThePictureAndTheRestIsResumed) {
   for (int i = 1; i < 8; ++i)
     EXPECT_EQ(readPicture(folder_ / ("m" + std::to_string(i) + ".png")).pixels,
               readPicture(folder_ / "m0.png").pixels);
+}
+
+// Too many atoms behind a pixel are the file's doing, not the driver's.
+TEST_F(Scenes, aSurfaceThatIsTooDeepStopsNothing) {
+  std::string atoms;
+  for (int i = 0; i < 2000; ++i)
+    atoms += fmt::format("HETATM{:5}  C   LIG A{:4}    {:8.3f}{:8.3f}{:8.3f}  1.00 20.00           C\n",
+                         i + 1, i + 1, 0.001 * i, 0.0, 0.0);
+  writeFile(folder_ / "deep.pdb", atoms + "END\n");
+  const Words lists = with({"-o", "{stem}.png", "--representation", "surface", "--surface-method", "lists",
+                            "--surface-option", "memory=0.01"},
+                           kSmall);
+  expectSuccess(render(with({molecule("c60.pdb")}, lists)));
+  const std::string alone = readFile(folder_ / "c60.png");
+  std::filesystem::remove(folder_ / "c60.png");
+  expectError(render(with({"deep.pdb", molecule("c60.pdb")}, lists)), ExitCode::badInput,
+              {"balls lie behind one pixel"});
+  EXPECT_EQ(readFile(folder_ / "c60.png"), alone);
 }
 
 TEST_F(Scenes, aTimeLimitGivesUpAPicture) {

@@ -122,7 +122,7 @@ TEST_F(Lists, ListsLongerThanTheMemory) {
   try {
     draw(scene, view, lists({{"memory", 0.01}}));
     ADD_FAILURE() << "drew it";
-  } catch (const GraphicsError& error) {
+  } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("2000 balls lie behind one pixel"), std::string::npos);
   }
 }
@@ -135,7 +135,7 @@ TEST_F(Lists, MoreOverlapThanTheDriverCanLoopOver) {
   view.pixelSize = 0.2;
   try {
     expectExact(judge(test::SurfaceScene(field), view, lists()));
-  } catch (const GraphicsError& error) {
+  } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("more balls overlap in 1 pixels"), std::string::npos);
   }
 }
