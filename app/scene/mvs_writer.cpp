@@ -131,6 +131,12 @@ Json rootNode(const Picture& picture, const std::filesystem::path& sceneFile) {
   GivenOptions given = picture.options.given;
   std::erase_if(given,
                 [](const auto& option) { return option.first == "style"; });  // its options stand there, too
+  // A scene has no other name for the spacing of the mesh that is drawn.
+  for (auto& [name, value] : given)
+    if (name == "mesh-spacing" && picture.options.surface.method == "mesh") {
+      name = "surface-option";
+      value = "spacing=" + value;
+    }
   Json custom = settingsAsJson(given, SettingPlace::picture);
   custom["made_from"] = {{"source", picture.source}, {"command", picture.command}};
 
