@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <set>
 
@@ -27,9 +28,13 @@ int majorVersion(const JsonPlace& file, std::vector<std::string>& notes) {
   return major;
 }
 
-void addContents(const MvsNode& node, SceneResources& resources, std::string& all) {
-  if (node.kind() == "download") all += contentHash(resources.bytes(node.at("url")));
-  for (const MvsNode& child : node.children()) addContents(child, resources, all);
+/// Whether a download is read for a picture.
+bool isRead(const MvsNode& download) {
+  return std::ranges::any_of(download.children(), [](const MvsNode& parse) {
+    return parse.kind() == "parse" && isReadFormat(parse.at("format").string()) &&
+           std::ranges::any_of(parse.children(),
+                               [](const MvsNode& child) { return child.kind() == "structure"; });
+  });
 }
 
 }  // namespace
@@ -76,7 +81,9 @@ MvsFile::MvsFile(const std::filesystem::path& path, const ResourceOptions& optio
 
 std::string MvsFile::contentName() {
   std::string all = contentHash(resources_.sceneText());
-  for (const MvsState& state : states_) addContents(state.root, resources_, all);
+  for (const MvsState& state : states_)
+    for (const MvsNode& node : state.root.children())
+      if (node.kind() == "download" && isRead(node)) all += contentHash(resources_.bytes(node.at("url")));
   return contentHash(all);
 }
 

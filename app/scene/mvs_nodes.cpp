@@ -146,8 +146,8 @@ void checkTree(const MvsNode& root, bool lenient) {
   checkReferences(root, kindOfRef);
 }
 
-bool isKnownKind(std::string_view kind) {
-  return findKind(kind) != nullptr;
+bool isReadFormat(std::string_view format) {
+  return format == "mmcif" || format == "pdb" || format == "bcif";
 }
 
 }  // namespace meniscus

@@ -43,7 +43,7 @@ class MvsNode {
 /// kind may not, or whose ref another node has.
 void checkTree(const MvsNode& root, bool lenient);
 
-/// Whether a kind of node is part of the format.
-bool isKnownKind(std::string_view kind);
+/// Whether files of this format, as a parse node names it, are read.
+bool isReadFormat(std::string_view format);
 
 }  // namespace meniscus

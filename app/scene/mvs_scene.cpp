@@ -181,7 +181,7 @@ void StateReader::readDownload(const MvsNode& node) {
     const JsonPlace format = parse.at("format");
     if (std::find(kFormats.begin(), kFormats.end(), format.string()) == kFormats.end())
       format.fail(fmt::format("there is no format called '{}'", format.string()));
-    if (format.string() != "mmcif" && format.string() != "pdb" && format.string() != "bcif") {
+    if (!isReadFormat(format.string())) {
       leaveOut(parse, fmt::format("files of format '{}' are not read", format.string()));
       continue;
     }

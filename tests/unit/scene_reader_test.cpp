@@ -312,6 +312,21 @@ TEST_F(SceneReader, whatIsNotSupportedIsListedWithItsPlaceAndReason) {
   EXPECT_TRUE(listed("root.children[2]: has no meaning"));
 }
 
+// What a manifest knows of a scene's content needs nothing that is not drawn.
+TEST_F(SceneReader, onlyWhatIsReadIsFetched) {
+  const auto download = [](const char* format, Json child) {
+    return node("download", {{"url", "https://example.org/x"}},
+                {node("parse", {{"format", format}}, {std::move(child)})});
+  };
+  const auto contentOf = [&](std::vector<Json> more) {
+    writeFile(folder_ / "fig.mvsj", structureScene("1ubq.pdb", {shown("all")}, std::move(more)).dump());
+    return MvsFile(folder_ / "fig.mvsj", {true, folder_ / "cache"}).contentName();
+  };
+  const std::string map = contentOf({download("map", node("volume"))});
+  EXPECT_NE(map, contentOf({download("mmcif", node("volume"))}));
+  EXPECT_THROW(contentOf({download("mmcif", node("structure", {{"type", "model"}}))}), InputError);
+}
+
 TEST_F(SceneReader, severalStatesBecomePicturesByKey) {
   Json scene = structureScene("1ubq.pdb", {shown("all")});
   Json second = structureScene("1ubq.pdb", {shown("water")});
