@@ -30,10 +30,12 @@ class TimedSink : public RowSink {
   double& seconds_;
 };
 
-PictureReport reportOn(const Picture& picture) {
+PictureReport reportOn(const Picture& picture, const Primitives& primitives) {
   PictureReport report;
   report.input = picture.input;
   report.output = picture.output;
+  report.size = picture.options.size;
+  report.samples = picture.options.samples;
   const Molecule* counted = nullptr;
   for (const SceneObject& object : picture.scene.objects) {
     if (object.molecule.get() == counted) continue;
@@ -41,6 +43,11 @@ PictureReport reportOn(const Picture& picture) {
     report.atoms += counted->atomCount();
     report.bonds += counted->bonds.size();
   }
+  report.spheres = primitives.spheres.size();
+  report.cylinders = primitives.cylinders.size();
+  report.ellipsoids = primitives.ellipsoids.size();
+  report.triangles = primitives.mesh.triangles.size();
+  for (const MetaballField& field : primitives.surfaces) report.metaballs += field.balls.size();
   return report;
 }
 
@@ -87,7 +94,6 @@ Lighting lightFor(const RenderOptions& options) {
 }  // namespace
 
 void PictureDrawer::draw(Picture picture) {
-  PictureReport report = reportOn(picture);
   ImageFileOptions imageOptions;
   std::unique_ptr<ImageFile> image;
   if (!picture.output.empty()) {
@@ -97,17 +103,12 @@ void PictureDrawer::draw(Picture picture) {
   exportMesh(picture);
   if (!image) return;
   TimedSink sink(*image, report_.encodeSeconds);
-  render(picture, sink, {imageOptions.format, imageOptions.layers},
-         fmt::format("{} -> {}", picture.input, picture.output));
+  PictureReport report = render(picture, sink, {imageOptions.format, imageOptions.layers},
+                                fmt::format("{} -> {}", picture.input, picture.output));
   {
     const Timed timed(report_.encodeSeconds);
     image->finish();
   }
-  report.spheres = drawn_.spheres;
-  report.cylinders = drawn_.cylinders;
-  report.ellipsoids = drawn_.ellipsoids;
-  report.metaballs = drawn_.metaballs;
-  report.triangles = drawn_.triangles;
   report_.pictures.push_back(std::move(report));
 }
 
@@ -135,22 +136,19 @@ void PictureDrawer::exportMesh(Picture& picture) {
 void PictureDrawer::drawTo(Picture picture, RowSink& sink, const std::string& label) {
   exportMesh(picture);
   TimedSink timed(sink, report_.encodeSeconds);
-  render(picture, timed, {PixelFormat::rgba8}, label);
+  report_.pictures.push_back(render(picture, timed, {PixelFormat::rgba8}, label));
 }
 
-void PictureDrawer::render(Picture& picture, RowSink& sink, const PixelLayout& layout,
-                           const std::string& label) {
+PictureReport PictureDrawer::render(Picture& picture, RowSink& sink, const PixelLayout& layout,
+                                    const std::string& label) {
   const RenderOptions& options = picture.options;
   Scene& scene = picture.scene;
   std::shared_ptr<const Primitives> primitives =
       picture.primitives ? picture.primitives : primitivesOf(picture);
+  PictureReport report = reportOn(picture, *primitives);
+  report_.size = report.size;
+  report_.samples = report.samples;
   scene.objects.clear();
-  drawn_ = {};
-  drawn_.spheres = primitives->spheres.size();
-  drawn_.cylinders = primitives->cylinders.size();
-  drawn_.ellipsoids = primitives->ellipsoids.size();
-  drawn_.triangles = primitives->mesh.triangles.size();
-  for (const MetaballField& field : primitives->surfaces) drawn_.metaballs += field.balls.size();
 
   const View view = makeView(scene.camera, options.size, primitives->bounds());
   std::vector<LabelSprite> labels = drawLabels(
@@ -168,6 +166,7 @@ void PictureDrawer::render(Picture& picture, RowSink& sink, const PixelLayout& l
                        if (watch) watch();
                        progress_.update(share);
                      });
+  return report;
 }
 
 std::shared_ptr<const Primitives> PictureDrawer::primitivesOf(const Picture& picture) {

@@ -33,13 +33,12 @@ class PictureDrawer {
 
  private:
   void exportMesh(Picture& picture);
-  void render(Picture& picture, RowSink& sink, const PixelLayout& layout, const std::string& label);
+  PictureReport render(Picture& picture, RowSink& sink, const PixelLayout& layout, const std::string& label);
   Renderer& renderer();
 
   const RenderOptions& options_;
   RunReport& report_;
   Progress& progress_;
-  PictureReport drawn_;                      // the counts of the picture that is being drawn
   std::shared_ptr<const Primitives> shown_;  // what the renderer holds
   std::unique_ptr<Context> context_;
   std::unique_ptr<Renderer> renderer_;

@@ -17,14 +17,16 @@ struct PictureReport {
   std::string input, output;
   std::size_t atoms = 0, bonds = 0;  ///< of the models drawn, before copies are placed
   std::size_t spheres = 0, cylinders = 0, ellipsoids = 0, metaballs = 0, triangles = 0;
+  ImageSize size;
+  int samples = 0;
 };
 
 struct RunReport {
-  std::string backend, renderer;  ///< empty if no context was needed
-  ImageSize size;
-  int samples = 0;
-  std::vector<PictureReport> pictures;
-  std::vector<std::string> failures;  ///< one line each
+  std::string backend, renderer;        ///< empty if no context was needed
+  ImageSize size;                       ///< of the last picture, or as asked for if there is none
+  int samples = 0;                      ///< likewise
+  std::vector<PictureReport> pictures;  ///< every frame of a film, too
+  std::vector<std::string> failures;    ///< one line each
   /// Wall time [s]; compiling, drawing and reading back are timed by the renderer.
   double parseSeconds = 0, bondsSeconds = 0, primitivesSeconds = 0, contextSeconds = 0, encodeSeconds = 0,
          meshSeconds = 0, totalSeconds = 0;

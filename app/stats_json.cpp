@@ -59,6 +59,9 @@ std::string statsAsJson(const RunReport& report) {
   for (const PictureReport& picture : report.pictures)
     json["pictures"].push_back({{"input", picture.input},
                                 {"output", picture.output},
+                                {"width", picture.size.width},
+                                {"height", picture.size.height},
+                                {"samples", picture.samples},
                                 {"atoms", picture.atoms},
                                 {"bonds", picture.bonds},
                                 {"spheres", picture.spheres},

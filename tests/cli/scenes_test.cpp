@@ -97,7 +97,14 @@ TEST_F(Scenes, aFilmIsSavedAsStates) {
     EXPECT_EQ(readPicture(folder_ / states[i]).pixels,
               readPicture(folder_ / ("f0000" + std::to_string(i + 1) + ".png")).pixels);
 
-  expectSuccess(run({"render", "-q", "--scene", "a.mvsj", "-o", "again.gif"}, path));
+  expectSuccess(run({"render", "-q", "--scene", "a.mvsj", "-o", "again.gif", "--stats", "s.json"}, path));
+  const nlohmann::json stats = nlohmann::json::parse(readFile(folder_ / "s.json"));
+  EXPECT_EQ(stats["width"], 64);  // as the scene says
+  EXPECT_EQ(stats["samples"], 1);
+  ASSERT_EQ(stats["pictures"].size(), 3u);
+  EXPECT_EQ(stats["pictures"][2]["output"], "again.gif");
+  EXPECT_EQ(stats["pictures"][2]["height"], 48);
+  EXPECT_EQ(stats["pictures"][2]["spheres"], 60);
   EXPECT_EQ(readFile(folder_ / "again.gif").size(), 3u * 64 * 48 * 4);
   EXPECT_EQ(readFile(folder_ / "again.gif"), readFile(folder_ / "film.gif"));
   expectError(render({"--scene", "a.mvsj", "-o", "again.png"}), ExitCode::badInput, {"3 states", "{state}"});
