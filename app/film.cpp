@@ -75,6 +75,12 @@ void turn(Picture& picture, int frame, const RenderOptions& options, const Outpu
 
 struct FilmFile::Impl {
   explicit Impl(const std::filesystem::path& path) : file(path) {}
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  ~Impl() {
+    if (child > 0) ::kill(child, SIGKILL);
+    wait();
+  }
   OutputFile file;
   int pipe = -1;
   pid_t child = 0;
@@ -143,10 +149,7 @@ FilmFile::FilmFile(const std::filesystem::path& path, ImageSize size, double fra
   std::signal(SIGPIPE, SIG_IGN);  // an ffmpeg that gave up is met where it is waited for
 }
 
-FilmFile::~FilmFile() {
-  if (impl_->child > 0) ::kill(impl_->child, SIGKILL);
-  impl_->wait();
-}
+FilmFile::~FilmFile() = default;
 
 void FilmFile::writeRows(std::span<const std::byte> rows) {
   const std::byte* data = rows.data();
