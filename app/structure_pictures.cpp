@@ -202,19 +202,19 @@ void StructurePictures::addLabels(const SceneObject& object, std::vector<Label>&
 // first.
 Camera StructurePictures::cameraFor(const std::vector<Objects>& models) const {
   std::vector<FitSphere> spheres, first;
+  const auto add = [](const std::vector<FitSphere>& some, std::vector<FitSphere>& to) {
+    to.insert(to.end(), some.begin(), some.end());
+  };
   for (const Objects& objects : models) {
     for (const SceneObject& object : objects) {
-      if (&objects == &models.front()) {
-        const std::vector<FitSphere> some = fitSpheres(object);
-        first.insert(first.end(), some.begin(), some.end());
+      std::vector<FitSphere> all;
+      if (options_.focus.empty() || &objects == &models.front()) all = fitSpheres(object);
+      if (&objects == &models.front()) add(all, first);
+      if (options_.focus.empty()) {
+        add(all, spheres);
+      } else if (const auto atoms = selectAtoms(*object.molecule, options_.focus); !atoms.empty()) {
+        add(fitSpheres(object, atoms), spheres);
       }
-      std::vector<std::uint32_t> atoms;
-      if (!options_.focus.empty()) {
-        atoms = selectAtoms(*object.molecule, options_.focus);
-        if (atoms.empty()) continue;
-      }
-      const std::vector<FitSphere> some = fitSpheres(object, atoms);
-      spheres.insert(spheres.end(), some.begin(), some.end());
     }
   }
   if (spheres.empty() && options_.focus.empty())
