@@ -26,14 +26,6 @@ namespace {
 using Molecules = std::vector<std::shared_ptr<const Molecule>>;
 using Objects = std::vector<SceneObject>;
 
-double placedAtomCount(const Molecule& molecule, const std::vector<Placement>& placements) {
-  double atoms = 0;
-  for (const Placement& placement : placements)
-    for (const IndexRange& range : placement.residues)
-      for (std::uint32_t r = range.first; r < range.end(); ++r) atoms += molecule.residues[r].atoms.count;
-  return atoms;
-}
-
 class StructurePictures {
  public:
   StructurePictures(const std::string& file, const RenderOptions& options) : file_(file), options_(options) {}
@@ -144,7 +136,7 @@ void StructurePictures::requireMemoryFor(const Molecules& molecules) const {
     atoms += count;
     placed += options_.assembly.empty()
                   ? count
-                  : placedAtomCount(*molecule, placeAssembly(*molecule, options_.assembly));
+                  : placedAtomCount(*molecule, {}, placeAssembly(*molecule, options_.assembly));
   }
   const glm::dvec3 lattice(options_.replicate);
   placed *= lattice.x * lattice.y * lattice.z;
@@ -273,6 +265,20 @@ Label labelOf(std::shared_ptr<const Molecule> molecule, const std::vector<Placem
   labelled.atoms = std::move(atoms);
   const BoundingSphere bounds = boundsOf(fitSpheres(labelled));
   return {text, bounds.center, bounds.radius};
+}
+
+double placedAtomCount(const Molecule& molecule, const std::vector<std::uint32_t>& atoms,
+                       const std::vector<Placement>& placements) {
+  std::vector<double> before(molecule.residues.size() + 1);  // a residue: atoms of those before it
+  for (const std::uint32_t atom : atoms) ++before[molecule.residueOf[atom] + 1];
+  for (std::size_t r = 0; r < molecule.residues.size(); ++r) {
+    if (atoms.empty()) before[r + 1] = molecule.residues[r].atoms.count;
+    before[r + 1] += before[r];
+  }
+  double count = 0;
+  for (const Placement& placement : placements)
+    for (const IndexRange& range : placement.residues) count += before[range.end()] - before[range.first];
+  return count;
 }
 
 double bytesPerAtom(Representation representation) {

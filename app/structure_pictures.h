@@ -17,6 +17,10 @@ SceneObject objectAsAsked(const RenderOptions& options, std::shared_ptr<const Mo
 Label labelOf(std::shared_ptr<const Molecule> molecule, const std::vector<Placement>& placements,
               std::vector<std::uint32_t> atoms, const std::string& text);
 
+/// How many of these atoms (ascending; none = all) the placements draw.
+double placedAtomCount(const Molecule& molecule, const std::vector<std::uint32_t>& atoms,
+                       const std::vector<Placement>& placements);
+
 /// What an atom takes of memory at most, a picture aside [bytes]. Measured for spheres on 16 million atoms;
 /// the others add what their primitives take.
 double bytesPerAtom(Representation representation);

@@ -73,6 +73,7 @@ class StateReader {
   Preparation made_;
   Picture picture_;
   MvsCamera camera_;
+  double atoms_ = 0, bytes_ = 0;            // of all objects
   std::optional<double> surfaceOpacity_;    // of the first surface
   std::vector<const MvsNode*> wholeFocus_;  // focus nodes under the root, about everything
   std::map<std::string, ReadStructure>& structures_;
@@ -102,14 +103,10 @@ Preparation StateReader::read() {
         fmt::format("{}: draws nothing{}", state_.root.place().path(),
                     made_.unsupported.empty() ? "" : " that is supported; " + made_.unsupported[0]));
   std::vector<FitSphere> all;
-  double atoms = 0, bytes = 0;
   for (const SceneObject& object : picture_.scene.objects) {
     const std::vector<FitSphere> some = fitSpheres(object);
     all.insert(all.end(), some.begin(), some.end());
-    atoms += static_cast<double>(some.size());
-    bytes += bytesPerAtom(object.representation) * static_cast<double>(some.size());
   }
-  requireMemory(name_, atoms, atoms, bytes);
   for (const MvsNode* node : wholeFocus_) camera_.readFocus(*node, all, made_.unsupported);
   picture_.scene.camera = camera_.camera(options, all);
   // What is set for the picture, here or on the command line, has its way.
@@ -287,16 +284,20 @@ void StateReader::readComponent(const MvsNode& node, ReadStructure& structure,
     return;
   }
   movePlacements(node, *structure.molecule, placements, made_.unsupported);
-  SceneObject whole;
-  whole.molecule = structure.molecule;
-  whole.placements = placements;
-  whole.atoms = atoms;
-  const std::vector<FitSphere> spheres = fitSpheres(whole);
+  const auto spheres = [&] {
+    const double count = placedAtomCount(*structure.molecule, atoms, placements);
+    requireMemory(name_, count, count, sizeof(FitSphere) * count);
+    SceneObject whole;
+    whole.molecule = structure.molecule;
+    whole.placements = placements;
+    whole.atoms = atoms;
+    return fitSpheres(whole);
+  };
   for (const MvsNode& child : node.children()) {
     if (child.kind() == "representation") {
       readRepresentation(child, node, structure, placements, atoms);
     } else if (child.kind() == "focus") {
-      camera_.readFocus(child, spheres, made_.unsupported);
+      camera_.readFocus(child, spheres(), made_.unsupported);
     } else if (child.kind() == "label") {
       child.listOtherParameters({"text"}, made_.unsupported);
       picture_.scene.labels.push_back(
@@ -442,6 +443,10 @@ void StateReader::setColors(const MvsNode& node, bool schemeGiven, SceneObject& 
 }
 
 void StateReader::addObject(SceneObject object, ReadStructure& structure) {
+  const double count = placedAtomCount(*object.molecule, object.atoms, object.placements);
+  atoms_ += count;
+  bytes_ += bytesPerAtom(object.representation) * count;
+  requireMemory(name_, atoms_, atoms_, bytes_);
   Logger logger;
   if (needsBonds(object.representation) && !structure.hasBonds) {
     const Timed timed(made_.bondsSeconds);

@@ -87,6 +87,17 @@ TEST_F(SceneErrors, wrongTypesAndKindsAreNamed) {
   expectParts(with("file://other/x.pdb", "/root/children/0/params/url"), {"another machine"});
 }
 
+// Before the memory is taken: the system would end the process without a word.
+TEST_F(SceneErrors, copiesThatDoNotFitIntoMemoryAreRefused) {
+  for (const Json& component :
+       {shown("all"), node("component", {{"selector", "all"}}, {node("focus"), shown("all")["children"][0]})}) {
+    Json scene = structureScene("2hhb.pdb.gz", {component});
+    Json& structure = scene["root"]["children"][0]["children"][0]["children"][0];
+    structure = withCustom(structure, {{"replicate", "100x100x100"}});
+    expectParts(errorOf(scene), {"'fig.mvsj'", "GB of memory, more than there is"});
+  }
+}
+
 TEST_F(SceneErrors, referencesMustLeadSomewhereElse) {
   Json scene = structureScene("1ubq.pdb", {shown("all")});
   Json& structure = scene["root"]["children"][0]["children"][0]["children"][0];
