@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "core/shared_math.h"
-#include "render/srgb.h"
+#include "core/srgb.h"
 
 namespace meniscus {
 

@@ -13,7 +13,8 @@ RunReport exampleReport() {
   report.renderer = "llvmpipe";
   report.size = {640, 480};
   report.samples = 4;
-  report.pictures = {{"a.pdb", "a.png", 327, 0, 327, 0}};
+  report.pictures = {
+      {.input = "a.pdb", .output = "a.png", .atoms = 327, .spheres = 327, .size = {640, 480}, .samples = 4}};
   report.failures = {"'b\xFF.pdb': no atoms"};
   report.parseSeconds = 0.5;
   report.totalSeconds = 2;

@@ -89,8 +89,8 @@ TEST_F(SceneErrors, wrongTypesAndKindsAreNamed) {
 
 // Before the memory is taken: the system would end the process without a word.
 TEST_F(SceneErrors, copiesThatDoNotFitIntoMemoryAreRefused) {
-  for (const Json& component :
-       {shown("all"), node("component", {{"selector", "all"}}, {node("focus"), shown("all")["children"][0]})}) {
+  for (const Json& component : {shown("all"), node("component", {{"selector", "all"}},
+                                                   {node("focus"), shown("all")["children"][0]})}) {
     Json scene = structureScene("2hhb.pdb.gz", {component});
     Json& structure = scene["root"]["children"][0]["children"][0]["children"][0];
     structure = withCustom(structure, {{"replicate", "100x100x100"}});
