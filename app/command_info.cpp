@@ -18,9 +18,9 @@
 namespace meniscus {
 namespace {
 
-constexpr const char* kDescription = "Says what a structure file (PDB, mmCIF, plain or .gz) holds.\n";
+constexpr const char* kInfoDescription = "Says what a structure file (PDB, mmCIF, plain or .gz) holds.\n";
 
-constexpr const char* kExamples =
+constexpr const char* kInfoExamples =
     "  meniscus info 1crn.pdb\n"
     "  meniscus info 4hhb.cif.gz --json\n"
     "  meniscus info 4hhb.cif.gz --json | jq .assemblies\n";
@@ -125,7 +125,7 @@ std::string asText(const FileInfo& info) {
 int runInfo(const std::vector<std::string>& arguments) {
   std::string file;
   bool json = false;
-  const std::unique_ptr<CLI::App> app = makeCommandLine("info", kDescription, kExamples);
+  const std::unique_ptr<CLI::App> app = makeCommandLine("info", kInfoDescription, kInfoExamples);
   app->add_option("FILE", file, "The structure file")->type_name("FILE");
   app->add_flag("--json", json,
                 "Print JSON with the keys file atoms residues chains models\n"

@@ -28,11 +28,11 @@ namespace {
 
 using namespace measure;
 
-constexpr const char* kDescription =
+constexpr const char* kMeasureDescription =
     "Measures error against run time and writes tables and a page to look at: DIR/report.html.\n"
     "Run again with the same folder, it goes on where it was interrupted.\n";
 
-constexpr const char* kExamples =
+constexpr const char* kMeasureExamples =
     "  meniscus measure quick -o out\n"
     "  meniscus measure stability -o stable\n"
     "  meniscus measure my_sweep.json -o out      # docs/measuring.md says how to write one\n";
@@ -104,7 +104,7 @@ int runSweep(const MeasureOptions& options) {
 
 int runMeasure(const std::vector<std::string>& arguments) {
   MeasureOptions options;
-  const std::unique_ptr<CLI::App> app = makeCommandLine("measure", kDescription, kExamples);
+  const std::unique_ptr<CLI::App> app = makeCommandLine("measure", kMeasureDescription, kMeasureExamples);
   app->add_option("sweep", options.sweep, sweepHelp())->type_name("SWEEP");
   app->add_option("-o,--output", options.folder, "Folder for the tables and the report; made if missing")
       ->type_name("DIR")

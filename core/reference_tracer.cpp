@@ -46,7 +46,7 @@ LongRay longRay(const View& view, glm::dvec2 pixel) {
 }
 
 /// All rays of some pixels lie in a cone from the eye or, orthographic, in a cylinder.
-struct Beam {
+struct SurfaceBeam {
   bool cone = true;
   glm::dvec3 apex{0.0}, axis{0.0, 0.0, -1.0};
   double sine = 0, cosine = 1;  ///< of the cone's half angle
@@ -74,7 +74,7 @@ class FieldInView {
   const MetaballField& field() const { return field_; }
   const std::vector<ViewBall>& balls() const { return balls_; }
   ViewRay rayOf(const View& view, glm::dvec2 pixel, double shift) const;
-  Beam beamOf(const View& view, glm::dvec2 low, glm::dvec2 high) const;
+  SurfaceBeam beamOf(const View& view, glm::dvec2 low, glm::dvec2 high) const;
 
  private:
   const MetaballField& field_;
@@ -131,9 +131,9 @@ ViewRay FieldInView::rayOf(const View& view, glm::dvec2 pixel, double shift) con
   return out;
 }
 
-Beam FieldInView::beamOf(const View& view, glm::dvec2 low, glm::dvec2 high) const {
+SurfaceBeam FieldInView::beamOf(const View& view, glm::dvec2 low, glm::dvec2 high) const {
   const LongRay axis = longRay(view, (low + high) / 2.0);
-  Beam beam;
+  SurfaceBeam beam;
   beam.cone = view.projection == Projection::perspective;
   beam.apex = glm::dvec3(axis.origin - middle_);
   beam.axis = glm::dvec3(axis.direction);
@@ -241,7 +241,7 @@ TileCaster::Pixel TileCaster::cast(glm::dvec2 pixel) {
   return out;
 }
 
-constexpr int kTile = 8, kBlock = 8;  // pixels in a tile, tiles in a block, along each side
+constexpr int kBeamTile = 8, kBlock = 8;  // pixels in a tile, tiles in a block, along each side
 
 /// Fills the picture block by block; tiles are filtered from their block's balls, which keeps their order.
 class PictureTracer {
@@ -251,8 +251,8 @@ class PictureTracer {
       : fields_(fields), view_(view), options_(options), image_(image) {}
 
   void trace() {
-    const int blocksX = (view_.size.width + kTile * kBlock - 1) / (kTile * kBlock);
-    const int blocksY = (view_.size.height + kTile * kBlock - 1) / (kTile * kBlock);
+    const int blocksX = (view_.size.width + kBeamTile * kBlock - 1) / (kBeamTile * kBlock);
+    const int blocksY = (view_.size.height + kBeamTile * kBlock - 1) / (kBeamTile * kBlock);
     tbb::parallel_for(tbb::blocked_range2d<int>(0, blocksY, 1, 0, blocksX, 1), [&](const auto& range) {
       for (int y = range.rows().begin(); y < range.rows().end(); ++y)
         for (int x = range.cols().begin(); x < range.cols().end(); ++x) traceBlock(x, y);
@@ -262,7 +262,7 @@ class PictureTracer {
   }
 
  private:
-  Beam beamOf(const FieldInView& field, int x, int y, int pixels) const {
+  SurfaceBeam beamOf(const FieldInView& field, int x, int y, int pixels) const {
     const double margin = options_.grazing ? options_.grazingShift : 0;
     return field.beamOf(view_, glm::dvec2(x, y) - margin, glm::dvec2(x + pixels, y + pixels) + margin);
   }
@@ -278,10 +278,10 @@ class PictureTracer {
 };
 
 void PictureTracer::traceBlock(int blockX, int blockY) {
-  const int side = kTile * kBlock, left = blockX * side, bottom = blockY * side;
+  const int side = kBeamTile * kBlock, left = blockX * side, bottom = blockY * side;
   std::vector<std::vector<std::uint32_t>> inBlock(fields_.size());
   for (std::size_t f = 0; f < fields_.size(); ++f) {
-    const Beam beam = beamOf(fields_[f], left, bottom, side);
+    const SurfaceBeam beam = beamOf(fields_[f], left, bottom, side);
     const std::vector<ViewBall>& balls = fields_[f].balls();
     for (std::uint32_t i = 0; i < balls.size(); ++i)
       if (beam.meets(balls[i].center, balls[i].support)) inBlock[f].push_back(i);
@@ -290,9 +290,9 @@ void PictureTracer::traceBlock(int blockX, int blockY) {
     TileCaster caster(fields_, view_, options_);
     for (int ty = range.rows().begin(); ty < range.rows().end(); ++ty) {
       for (int tx = range.cols().begin(); tx < range.cols().end(); ++tx) {
-        const int x0 = left + tx * kTile, y0 = bottom + ty * kTile;
+        const int x0 = left + tx * kBeamTile, y0 = bottom + ty * kBeamTile;
         for (std::size_t f = 0; f < fields_.size(); ++f) {
-          const Beam beam = beamOf(fields_[f], x0, y0, kTile);
+          const SurfaceBeam beam = beamOf(fields_[f], x0, y0, kBeamTile);
           std::vector<std::uint32_t>& candidates = caster.candidatesOf(f);
           candidates.clear();
           for (const std::uint32_t i : inBlock[f]) {
@@ -307,7 +307,7 @@ void PictureTracer::traceBlock(int blockX, int blockY) {
 }
 
 void PictureTracer::traceTile(int x0, int y0, TileCaster& caster) {
-  const int x1 = std::min(x0 + kTile, view_.size.width), y1 = std::min(y0 + kTile, view_.size.height);
+  const int x1 = std::min(x0 + kBeamTile, view_.size.width), y1 = std::min(y0 + kBeamTile, view_.size.height);
   for (int y = y0; y < y1; ++y)
     for (int x = x0; x < x1; ++x) store(x, y, caster.cast(glm::dvec2(x + 0.5, y + 0.5)));
 }

@@ -1,15 +1,10 @@
 #include "render/view_block.h"
 
+#include "render/two_floats.h"
+
 namespace meniscus {
 
 namespace {
-
-float high(double x) {
-  return static_cast<float>(x);
-}
-float low(double x) {
-  return static_cast<float>(x - static_cast<double>(high(x)));
-}
 
 // The first 12 significant bits of a number, and what is left of it.
 float upper12(double x) {

@@ -8,6 +8,7 @@
 
 #include "app/measure/csv.h"
 #include "app/measure/measure_scene.h"
+#include "app/measure/null_sink.h"
 #include "app/measure/statistics.h"
 #include "render/renderer.h"
 #include "render/surface_method.h"
@@ -15,11 +16,6 @@
 namespace meniscus::measure {
 
 namespace {
-
-class NullSink : public RowSink {
- public:
-  void writeRows(std::span<const std::byte>) override {}
-};
 
 struct Kind {
   std::string name;

@@ -10,6 +10,7 @@
 
 #include "app/measure/csv.h"
 #include "app/measure/measure_scene.h"
+#include "app/measure/null_sink.h"
 #include "app/measure/stability.h"
 #include "app/measure/statistics.h"
 #include "core/error.h"
@@ -79,11 +80,6 @@ const std::vector<PaperTable>& paperTables() {
   };
   return kTables;
 }
-
-class NullSink : public RowSink {
- public:
-  void writeRows(std::span<const std::byte>) override {}
-};
 
 class PaperRun {
  public:

@@ -10,6 +10,7 @@
 
 #include "app/measure/csv.h"
 #include "app/measure/measure_scene.h"
+#include "app/measure/null_sink.h"
 #include "app/measure/statistics.h"
 #include "render/renderer.h"
 #include "render/shadow_scene.h"
@@ -19,11 +20,6 @@ namespace meniscus::measure {
 namespace {
 
 constexpr int kPatterns = 16, kPatternSamples = 256;  // of the truth
-
-class NullSink : public RowSink {
- public:
-  void writeRows(std::span<const std::byte>) override {}
-};
 
 ShadowSettings softShadows(double penumbra, int samples, int probes) {
   return {ShadowMode::soft, penumbra, samples, probes};

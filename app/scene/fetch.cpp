@@ -16,12 +16,12 @@
 namespace meniscus {
 namespace {
 
-constexpr std::size_t kMostBytes = std::size_t{4} << 30;
+constexpr std::size_t kMostFetchedBytes = std::size_t{4} << 30;
 constexpr long kConnectSeconds = 30, kStalledSeconds = 60, kMostRedirects = 10;
 
 std::size_t collect(char* data, std::size_t size, std::size_t count, void* target) {
   auto& bytes = *static_cast<std::string*>(target);
-  if (bytes.size() + size * count > kMostBytes) return 0;  // curl then stops with a write error
+  if (bytes.size() + size * count > kMostFetchedBytes) return 0;  // curl then stops with a write error
   bytes.append(data, size * count);
   return size * count;
 }

@@ -10,7 +10,7 @@
 namespace meniscus {
 namespace {
 
-constexpr std::size_t kMostBytes = std::size_t{64} << 20;
+constexpr std::size_t kMostJsonBytes = std::size_t{64} << 20;
 constexpr int kDeepest = 200;
 
 const char* kindOf(const nlohmann::json& json) {
@@ -130,7 +130,7 @@ glm::dvec3 JsonPlace::vector() const {
 }
 
 nlohmann::json parseJson(const std::string& text, const std::string& path) {
-  if (text.size() > kMostBytes)
+  if (text.size() > kMostJsonBytes)
     throw InputError(
         fmt::format("{}: is larger than 64 MiB, as no scene is; refer to data by their addresses", path));
   if (const std::optional<std::size_t> place = tooDeepAt(text))

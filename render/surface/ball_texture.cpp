@@ -7,10 +7,6 @@
 
 namespace meniscus {
 
-namespace {
-constexpr int kBallsPerRow = 1024;
-}
-
 void BallTexture::upload(const void* numbers, std::size_t count) {
   const std::size_t most =
       static_cast<std::size_t>(gl::queryLimits().textureSize) * static_cast<std::size_t>(kBallsPerRow);

@@ -8,10 +8,11 @@
 
 namespace meniscus {
 
+inline constexpr int kBallsPerRow = 1024;  // as in shaders/include/ball_ray.glsl
+
 class BallTexture {
  public:
-  /// So many texels of four floats for each ball; 1024 balls (kBallsPerRow of shaders/include/ball_ray.glsl)
-  /// in a row.
+  /// So many texels of four floats for each ball; kBallsPerRow balls in a row.
   explicit BallTexture(int texelsPerBall) : texels_(texelsPerBall) {}
   /// Numbers of `count` balls one after the other. Throws InputError if the driver has no room for them.
   void upload(const void* numbers, std::size_t count);

@@ -19,7 +19,7 @@ namespace meniscus {
 
 namespace {
 
-constexpr SurfaceParameter kParameters[] = {
+constexpr SurfaceParameter kBezierParameters[] = {
     {"tolerance", "width to which a root is narrowed down, as a share of the smallest support around it",
      1e-5, 1e-7, 0.1, false},
     {"list", "ids that a pixel's list can hold at first", 14, 1, 1024, true},
@@ -46,7 +46,7 @@ struct BezierBlock {
 };
 
 // Control of shaders/surface/bezier_step.frag, before its cells.
-struct Control {
+struct PeelControl {
   std::uint32_t overflow = 0;
   std::uint32_t box[4] = {0xFFFFFFFFu, 0xFFFFFFFFu, 0, 0};
 };
@@ -144,7 +144,7 @@ class Bezier : public SurfaceMethod {
 }  // namespace
 
 std::span<const SurfaceParameter> bezierParameters() {
-  return kParameters;
+  return kBezierParameters;
 }
 
 std::unique_ptr<SurfaceMethod> makeBezier(const SurfaceParameters& values) {
@@ -255,9 +255,9 @@ void Bezier::drawRegion(Frame& frame, const ScreenRect& rect, int list, bool aga
   lists_.reserve(static_cast<std::uint64_t>(rect.pixels()) * 4 *
                  static_cast<std::uint64_t>(list + kHeaderSlots));
   lists_.bindStorage(1);
-  control_.reserve(sizeof(Control) + sizeof(CellState) * region.cells.size());
+  control_.reserve(sizeof(PeelControl) + sizeof(CellState) * region.cells.size());
   control_.zero();
-  const Control fresh;
+  const PeelControl fresh;
   control_.write(&fresh, sizeof fresh);
   control_.bindStorage(2);
   setUniforms(frame, region);
@@ -273,7 +273,7 @@ void Bezier::drawRegion(Frame& frame, const ScreenRect& rect, int list, bool aga
   glDisable(GL_SCISSOR_TEST);
   if (region.cells.empty() || !repair_) return;
 
-  Control control;
+  PeelControl control;
   control_.read(&control, sizeof control);
   if (control.overflow == 0) return;
   MENISCUS_CHECK(list < static_cast<int>(frame.projected.balls.size()));
@@ -372,13 +372,13 @@ void Bezier::peel(Frame& frame, Region& region) {
     region.measured = layer % kLeastPeriod == 0;
     if (region.measured) {
       for (CellState& state : states) state.least = 0xFFFFFFFFu;
-      control_.write(states.data(), states.size() * sizeof(CellState), sizeof(Control));
+      control_.write(states.data(), states.size() * sizeof(CellState), sizeof(PeelControl));
     }
     listUnfinished(frame, region, blocks, static_cast<std::uint32_t>(layer) - 1);
     peelLayer(frame, region);
     step(frame, region, layer);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-    control_.read(states.data(), states.size() * sizeof(CellState), sizeof(Control));
+    control_.read(states.data(), states.size() * sizeof(CellState), sizeof(PeelControl));
     blocks_.read(blocks.data(), blocks.size() * 4);
     ++statistics_.layers;
     statistics_.cellLayers += static_cast<double>(region.active.size());

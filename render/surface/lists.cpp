@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kArray = 64;  // kRing of shaders/surface/lists_cast.frag
 
-constexpr SurfaceParameter kParameters[] = {
+constexpr SurfaceParameter kListsParameters[] = {
     {"tolerance", "width to which a root is narrowed down, as a share of the smallest support around it",
      1e-5, 1e-7, 0.1, false},
     {"exact", "1: the balls' own polynomials; 0: the paper's cubics", 1, 0, 1, true},
@@ -51,7 +51,7 @@ struct ListsBlock {
 };
 
 // Control of shaders/include/lists_trace.glsl.
-struct Control {
+struct ListsControl {
   std::uint32_t unanswered, exhausted;
 };
 
@@ -126,7 +126,7 @@ class Lists : public SurfaceMethod {
 }  // namespace
 
 std::span<const SurfaceParameter> listsParameters() {
-  return kParameters;
+  return kListsParameters;
 }
 
 std::unique_ptr<SurfaceMethod> makeLists(const SurfaceParameters& values) {
@@ -149,7 +149,7 @@ void Lists::prepare(const MetaballField& field) {
   fieldUniforms_ = gl::Buffer::updatable(sizeof(FieldBlock));
   listsUniforms_ = gl::Buffer::updatable(sizeof(ListsBlock));
   gathered_.reserve(4);
-  control_.reserve(sizeof(Control));
+  control_.reserve(sizeof(ListsControl));
   statistics_.counts.prepare();
 }
 
@@ -427,7 +427,7 @@ void Lists::cast(Frame& frame, const Region& region, const ScreenRect& band, std
   glScissor(part.x, part.y, part.width, part.height);
   drawFullscreen(frame.shaders.program("post/fullscreen.vert", "surface/lists_cast.frag", frame.flags));
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-  Control control{};
+  ListsControl control{};
   control_.read(&control, sizeof control);
   if (control.unanswered > 0) {
     setUniforms(frame, region.rect, nodes, frame.translucent());
@@ -447,7 +447,7 @@ void Lists::walk(Frame& frame, const Region& region) {
   }
   const unsigned program =
       frame.shaders.program("post/fullscreen.vert", "surface/lists_walk.frag", frame.flags);
-  Control control{1, 0};
+  ListsControl control{1, 0};
   while (control.unanswered > 0) {
     control_.zero();
     glTextureBarrier();

@@ -15,7 +15,7 @@ namespace meniscus {
 
 namespace {
 
-constexpr SurfaceParameter kParameters[] = {
+constexpr SurfaceParameter kMeshParameters[] = {
     {"spacing", "side of the grid's cubes in Angstrom; what is smaller may be lost", 0.5, 0.1, 4, false},
 };
 
@@ -175,7 +175,7 @@ std::vector<ResourceStats> Mesh::buffers() const {
 }  // namespace
 
 std::span<const SurfaceParameter> meshParameters() {
-  return kParameters;
+  return kMeshParameters;
 }
 
 std::unique_ptr<SurfaceMethod> makeMesh(const SurfaceParameters& values) {

@@ -17,7 +17,7 @@ namespace meniscus {
 
 namespace {
 
-constexpr SurfaceParameter kParameters[] = {
+constexpr SurfaceParameter kNewtonParameters[] = {
     {"tolerance", "a step of Newton's method shorter than this share of the ball's support is the last", 1e-5,
      1e-7, 0.1, false},
     {"safeguard", "1: the first root, bracketed; 0: as the poster does, from where the hull is entered", 1, 0,
@@ -349,7 +349,7 @@ std::vector<ResourceStats> Newton::buffers() const {
 }  // namespace
 
 std::span<const SurfaceParameter> newtonParameters() {
-  return kParameters;
+  return kNewtonParameters;
 }
 
 std::unique_ptr<SurfaceMethod> makeNewton(const SurfaceParameters& values) {

@@ -8,13 +8,13 @@
 
 #include "core/ambient_field.h"
 #include "core/error.h"
+#include "render/surface/ball_texture.h"
 
 namespace meniscus {
 
 namespace {
 
-// As in shaders/include/ball_ray.glsl and newton_balls.glsl.
-constexpr int kBallsPerRow = 1024, kOthersPerRow = 4096;
+constexpr int kOthersPerRow = 4096;  // as in shaders/include/newton_balls.glsl
 
 // A texture of as many whole rows as `items` need; `items` grows to fill them.
 template <class T>

@@ -10,16 +10,11 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "render/two_floats.h"
+
 namespace meniscus {
 
 namespace {
-
-float high(double x) {
-  return static_cast<float>(x);
-}
-float low(double x) {
-  return static_cast<float>(x - static_cast<double>(high(x)));
-}
 
 // Rasterizers snap corners to 1/256 pixel.
 constexpr double kPadding = 0.05;
