@@ -16,6 +16,9 @@
 namespace meniscus::test {
 
 using Environment = std::vector<std::pair<std::string, std::string>>;
+using Names = std::vector<std::string>;
+
+inline constexpr const char* kProtein = "1ubq.pdb";
 
 /// What makes every way to OpenGL fail.
 inline const Environment kNoGraphics = {{"MENISCUS_EGL_LIBRARY", "/nonexistent/libEGL.so"},

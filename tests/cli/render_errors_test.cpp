@@ -8,8 +8,6 @@
 namespace meniscus::test {
 namespace {
 
-using Names = std::vector<std::string>;
-
 class BadCommand : public CliTest {
  protected:
   void refused(const std::vector<std::string>& arguments, const std::vector<std::string>& parts) const {

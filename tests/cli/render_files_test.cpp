@@ -7,8 +7,6 @@
 namespace meniscus::test {
 namespace {
 
-using Names = std::vector<std::string>;
-
 class RenderFiles : public CliTest {
  protected:
   ProcessResult renderSmall(std::vector<std::string> arguments) const {

@@ -7,8 +7,6 @@
 namespace meniscus::test {
 namespace {
 
-constexpr const char* kProtein = "1ubq.pdb";
-
 class RenderLight : public CliTest {
  protected:
   // Mean of all channels but alpha.
@@ -34,7 +32,6 @@ TEST_F(RenderLight, shadowsDarkenAndCostNothingWhenOff) {
   EXPECT_EQ(render(kProtein, {"--shadows", "soft"}).pixels, soft.pixels)
       << "the same command, the same picture";
 
-  using Names = std::vector<std::string>;
   EXPECT_EQ(passes(stats(kProtein, {"--quadrics", "splat"})), (Names{"spheres", "shade"}));
   EXPECT_EQ(passes(stats(kProtein, {"--shadows", "hard", "--quadrics", "splat"})),
             (Names{"shadow map: spheres", "spheres", "shadow", "shade"}));

@@ -7,8 +7,6 @@
 namespace meniscus::test {
 namespace {
 
-constexpr const char* kProtein = "1ubq.pdb";
-
 using Options = std::vector<std::string>;
 
 class RenderLines : public CliTest {

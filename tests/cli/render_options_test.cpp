@@ -7,8 +7,6 @@
 namespace meniscus::test {
 namespace {
 
-constexpr const char* kProtein = "1ubq.pdb";
-
 class RenderOption : public CliTest {};
 
 TEST_F(RenderOption, sizeIsWidthTimesHeightOrASquare) {

@@ -12,7 +12,6 @@
 namespace meniscus::test {
 namespace {
 
-using Names = std::vector<std::string>;
 using Words = std::vector<std::string>;
 
 class Scenes : public CliTest {

@@ -45,6 +45,9 @@ std::string sharedCallsText();
 /// Makes the inputs of case `index`, from in_[0] on.
 using Inputs = std::vector<float>;
 using Generator = std::function<Inputs(Random&, std::size_t index)>;
+inline void append(Inputs& out, glm::vec3 v) {
+  for (int k = 0; k < 3; ++k) out.push_back(v[k]);
+}
 
 /// One function's cells: as computed by the GPU, in float and in double.
 struct Results {

@@ -32,9 +32,6 @@ float number(Random& random, std::size_t i, std::size_t which) {
   return static_cast<float>(random.signedLog(1e-6, 1e6));
 }
 
-void append(Inputs& out, glm::vec3 v) {
-  for (int k = 0; k < 3; ++k) out.push_back(v[k]);
-}
 void appendSplit(Inputs& out, double x) {
   const auto hi = static_cast<float>(x);
   out.push_back(hi);

@@ -17,10 +17,6 @@ namespace {
 
 using namespace test;
 
-void append(Inputs& out, glm::vec3 v) {
-  for (int k = 0; k < 3; ++k) out.push_back(v[k]);
-}
-
 class SharedQuadrics : public test::GlTest {};
 
 TEST_F(SharedQuadrics, NormalsInOctahedra) {

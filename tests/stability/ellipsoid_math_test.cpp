@@ -7,6 +7,7 @@
 
 #include "core/shared_math.h"
 #include "render/view_block.h"
+#include "tests/stability/extremes.h"
 #include "tests/support/exact_rays.h"
 #include "tests/support/random.h"
 
@@ -15,12 +16,11 @@ namespace {
 
 using test::ExactEllipsoid;
 using test::ExactRay;
+using test::kEpsilon;
+using test::kOrigin;
 using test::Random;
 using test::Real;
 using test::Vec3;
-
-constexpr double kEpsilon = 0x1p-24;  // of float32
-constexpr glm::dvec3 kOrigin(12.25, -400.5, 77.0);
 
 // An ellipsoid that covers 1 to 300 pixels of a picture, away from its middle.
 struct Placed {

@@ -5,41 +5,22 @@
 
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
-#include <random>
 
 #include "core/shared_math.h"
 #include "render/view_block.h"
+#include "tests/stability/extremes.h"
 #include "tests/support/exact_rays.h"
+#include "tests/support/random.h"
 
 namespace meniscus {
 namespace {
 
 using test::ExactRay;
+using test::kEpsilon;
+using test::kOrigin;
+using test::Random;
 using test::Real;
 using test::Vec3;
-
-constexpr double kEpsilon = 0x1p-24;  // of float32
-constexpr glm::dvec3 kOrigin(12.25, -400.5, 77.0);
-
-class Random {
- public:
-  explicit Random(unsigned seed) : engine_(seed) {}
-  double uniform(double low, double high) {
-    return std::uniform_real_distribution<double>(low, high)(engine_);
-  }
-  double logUniform(double low, double high) { return std::exp(uniform(std::log(low), std::log(high))); }
-  glm::dvec3 direction() {
-    std::normal_distribution<double> normal;
-    return glm::normalize(glm::dvec3(normal(engine_), normal(engine_), normal(engine_)));
-  }
-  glm::dquat rotation() {
-    std::normal_distribution<double> normal;
-    return glm::normalize(glm::dquat(normal(engine_), normal(engine_), normal(engine_), normal(engine_)));
-  }
-
- private:
-  std::mt19937 engine_;
-};
 
 // A picture in which something of size `radius` at `distance` from the eye covers 1 to 300 pixels, away from
 // its middle.

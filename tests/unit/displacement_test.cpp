@@ -61,7 +61,7 @@ SceneObject objectOf(std::shared_ptr<const Molecule> molecule) {
   return object;
 }
 
-Primitives build(const SceneObject& object) {
+Primitives primitivesOf(const SceneObject& object) {
   Scene scene;
   scene.objects.push_back(object);
   return buildPrimitives(scene);
@@ -200,7 +200,7 @@ TEST(BuildEllipsoids, SpheresStaySpheres) {
   SceneObject object = objectOf(m);
   object.probability = 0.9;
   object.ellipsoidStickRadius = 0.05;
-  const Primitives p = build(object);
+  const Primitives p = primitivesOf(object);
   const double scale = 2.5002777;
   ASSERT_EQ(p.spheres.size(), 3u);
   EXPECT_NEAR(static_cast<double>(p.spheres[0].radius), scale * std::sqrt(30 / kIsotropic), 1e-5);
@@ -223,7 +223,7 @@ TEST(BuildEllipsoids, NothingIsAllocatedForThoseWithoutTensors) {
   auto m = rowOfAtoms(3);
   m->anisotropies.clear();
   m->bFactors = {10, 20, 30};
-  const Primitives p = build(objectOf(m));
+  const Primitives p = primitivesOf(objectOf(m));
   EXPECT_EQ(p.spheres.size(), 3u);
   EXPECT_EQ(p.ellipsoids.capacity(), 0u);
 }
@@ -236,7 +236,7 @@ TEST(BuildEllipsoids, PlacementsTurnTheTensors) {
   const glm::dmat4 turn =
       glm::rotate(glm::translate(glm::dmat4(1.0), {9.0, -5.0, 2.0}), 1.1, {0.0, 1.0, 1.0});
   object.placements.push_back({turn, {{0, 1}}});
-  const Primitives p = build(object);
+  const Primitives p = primitivesOf(object);
   ASSERT_EQ(p.ellipsoids.size(), 2u);
   const glm::dmat3 rotation(turn);
   EXPECT_LT(glm::length(rotation * glm::dvec3(p.ellipsoids[0].axisA) - glm::dvec3(p.ellipsoids[1].axisA)),
@@ -251,7 +251,7 @@ TEST(BuildEllipsoids, BoundsAndCameraHoldTheLongestAxis) {
   m->bFactors = {20, 20};
   m->anisotropies[1] = tensorOf(glm::dmat3(1.0), {0.1, 4.0, 0.2});
   const SceneObject object = objectOf(m);
-  const Primitives p = build(object);
+  const Primitives p = primitivesOf(object);
   const std::vector<FitSphere> fit = fitSpheres(object);
   ASSERT_EQ(fit.size(), 2u);
   EXPECT_NEAR(fit[1].radius, 2 * displacementScale(0.5), 1e-6);

@@ -9,15 +9,12 @@
 #include <vector>
 
 #include "core/error.h"
+#include "tests/support/kernels.h"
 
 namespace meniscus {
 namespace {
 
-const std::vector<Kernel> kKernels{{KernelShape::sextic},
-                                   {KernelShape::quartic},
-                                   {KernelShape::power, 2},
-                                   {KernelShape::power, 3},
-                                   {KernelShape::power, 16}};
+using test::kKernels;
 
 TEST(Kernel, GoesFromZeroToOne) {
   for (const Kernel& kernel : kKernels) {

@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "tests/support/exact_field.h"
+#include "tests/support/kernels.h"
 
 namespace meniscus {
 namespace {
@@ -17,15 +18,10 @@ namespace {
 using test::alongZ;
 using test::bisected;
 using test::ExactField;
+using test::kKernels;
 using test::Real;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-const std::vector<Kernel> kKernels{{KernelShape::sextic},
-                                   {KernelShape::quartic},
-                                   {KernelShape::power, 2},
-                                   {KernelShape::power, 5},
-                                   {KernelShape::power, 16}};
 
 MetaballField fieldOf(const Kernel& kernel, double level, std::vector<Metaball> balls) {
   return {std::move(balls), kernel, level};

@@ -17,10 +17,6 @@
 namespace meniscus::test {
 namespace {
 
-Molecule readMolecule(const std::string& name) {
-  return readFile(std::filesystem::path(MENISCUS_MOLECULES) / name).molecule();
-}
-
 Ribbon ribbonOf(const Molecule& molecule, const std::vector<bool>& chosen = {},
                 RibbonStyle style = RibbonStyle::cartoon) {
   return makeRibbon(molecule, findBackbones(molecule), chosen, style, 1);

@@ -12,12 +12,6 @@
 namespace meniscus::test {
 namespace {
 
-Molecule readMolecule(const std::string& name, Altlocs altlocs = Altlocs::all) {
-  StructureOptions options;
-  options.altlocs = altlocs;
-  return readFile(std::filesystem::path(MENISCUS_MOLECULES) / name, options).molecule();
-}
-
 char letter(SecondaryStructure s) {
   return s == SecondaryStructure::helix ? 'H' : s == SecondaryStructure::strand ? 'E' : '-';
 }
@@ -102,7 +96,9 @@ TEST(Backbones, endAtGapsAndTakeOneAlternateLocation) {
   const auto vertexCount = [](const Molecule& m) {
     return makeRibbon(m, findBackbones(m), {}, RibbonStyle::cartoon, 1).vertices.size();
   };
-  EXPECT_EQ(vertexCount(peptide), vertexCount(readMolecule("3al1.pdb.gz", Altlocs::first)));
+  StructureOptions first;
+  first.altlocs = Altlocs::first;
+  EXPECT_EQ(vertexCount(peptide), vertexCount(readMolecule("3al1.pdb.gz", first)));
 }
 
 TEST(Backbones, runThroughNucleicAcidsWithTheirBases) {

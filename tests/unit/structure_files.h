@@ -36,6 +36,11 @@ inline Read readData(const std::string& name, const StructureOptions& options = 
   return readFile(dataFile(name), options);
 }
 
+/// The first model of a file of molecules/.
+inline Molecule readMolecule(const std::string& name, const StructureOptions& options = {}) {
+  return readFile(std::filesystem::path(MENISCUS_MOLECULES) / name, options).molecule();
+}
+
 /// A file that lives as long as the object.
 class TemporaryFile {
  public:
