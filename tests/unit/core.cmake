@@ -8,3 +8,4 @@ meniscus_test(NAME field_tiles_test LABEL unit SOURCES field_tiles_test.cpp LIBR
 meniscus_test(NAME surface_mesh_test LABEL unit SOURCES surface_mesh_test.cpp LIBRARIES meniscus_core)
 find_package(assimp REQUIRED)  # an outside opinion on the files
 meniscus_test(NAME mesh_file_test LABEL unit SOURCES mesh_file_test.cpp LIBRARIES meniscus_io assimp::assimp)
+meniscus_test(NAME bvh_test LABEL unit SOURCES bvh_test.cpp LIBRARIES meniscus_core TBB::tbb)
