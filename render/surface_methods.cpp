@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "render/gl/objects.h"
 #include "render/surface/bezier.h"
+#include "render/surface/bvh.h"
 #include "render/surface/lists.h"
 #include "render/surface/mesh.h"
 #include "render/surface/newton.h"
@@ -24,6 +25,7 @@ std::span<const SurfaceMethodInfo> surfaceMethods() {
       {"lists", "fragment lists (Szecsi and Illes 2012)", listsParameters(), makeLists, true},
       {"newton", "hulls and Newton's method (SIGGRAPH 2006 poster), with a bracket around the first root",
        newtonParameters(), makeNewton},
+      {"bvh", "a fitted tree, for rays from anywhere (Gourmel et al. 2010)", bvhParameters(), makeBvh},
       {"mesh", "triangles by marching cubes; as exact as --mesh-spacing is fine", meshParameters(), makeMesh},
   };
   return kMethods;

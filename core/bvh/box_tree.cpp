@@ -128,7 +128,8 @@ Split Builder::bestSplit(std::span<const std::uint32_t> order, const Box& box, c
       sum.box.add(line[k].box);
       sum.count += line[k].count;
       if (sum.count == 0 || left[k] < 0) continue;
-      const double split = kStepCost + (left[k] + halfArea(sum.box) * costOfLeaf(cost_, sum.count)) / area;
+      const double split =
+          costOfStep(cost_) + (left[k] + halfArea(sum.box) * costOfLeaf(cost_, sum.count)) / area;
       if (split < least) {
         least = split;
         best = {axis, static_cast<int>(k)};

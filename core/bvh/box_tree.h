@@ -41,9 +41,12 @@ enum class LeafCost : std::uint8_t {
   square   ///< n^2: as many places at which as many shares are added up (Gourmel et al. 2010, §5.1.1)
 };
 
-/// The cost of a leaf, in units of one ball's share at one place; a step of the walk costs kStepCost.
+/// In units of one ball's share at one place. Steps of the walk: measured, where leaves of n^2 are the
+/// cheapest to walk for what they take to build (docs/measured/bvh.md); for leaves of n what is customary.
 double costOfLeaf(LeafCost cost, std::size_t members);
-inline constexpr double kStepCost = 2;
+constexpr double costOfStep(LeafCost cost) {
+  return cost == LeafCost::square ? 16 : 2;
+}
 
 struct Tree {
   std::vector<Node> nodes;  ///< [0] is the root; none at all without members

@@ -19,10 +19,10 @@ namespace {
 constexpr int kMostBins = 16;
 // Where there are fewer members, fewer bins tell as much.
 constexpr std::size_t kFewMembers = 32;
-constexpr int kFewBins = 8;
+constexpr int kFewBins = 6;
 // All leaves together have at most so many members per ball, or a thousand balls that almost coincide would
 // be cut into as many cells as there are ways to be in some and not in others.
-constexpr double kMostCopies = 64;
+constexpr double kMostCopies = 16;
 // Nodes with more are counted by several threads.
 constexpr std::size_t kLeastToCountApart = 65536;
 
@@ -76,7 +76,7 @@ class Builder {
     std::iota(arena.begin(), arena.end(), 0u);
     Cell all{Box{}, 0, balls_.size(), 0};
     for (const Metaball& ball : balls_) all.box.add({ball.center - ball.support, ball.center + ball.support});
-    Cell root = prepare(arena, all, all.box);
+    Cell root = prepare(arena, all, all.box, 0);
     root.room = kMostCopies * static_cast<double>(balls_.size());
     return root.box.empty() ? Tree{} : subtree(std::move(arena), root, 0);
   }
@@ -107,7 +107,7 @@ class Builder {
   Cut bestCut(std::span<const std::uint32_t> members, const Box& box) const;
   Counts countIn(std::span<const std::uint32_t> members, const Box& box, const glm::vec3& scale,
                  int bins) const;
-  Cell prepare(Arena& arena, const Cell& whole, const Box& box) const;
+  Cell prepare(Arena& arena, const Cell& whole, const Box& box, int axis) const;
   Box fitted(std::span<const std::uint32_t> members, const Box& box) const;
   void discard(Arena& arena, Cell& cell) const;
   void keep(Arena& arena, Cell& cell) const;
@@ -159,6 +159,7 @@ Cut Builder::bestCut(std::span<const std::uint32_t> members, const Box& box) con
         });
   }
   Cut best;
+  const double step = costOfStep(settings_.cost);
   const double area = std::max(halfArea(box), 1e-300);
   double least = costOfLeaf(settings_.cost, members.size());
   for (int axis = 0; axis < 3; ++axis) {
@@ -172,9 +173,9 @@ Cut Builder::bestCut(std::span<const std::uint32_t> members, const Box& box) con
       const float at = box.low[axis] + size[axis] * static_cast<float>(k) / static_cast<float>(bins);
       if (!(at > box.low[axis] && at < box.high[axis])) continue;
       low.high[axis] = high.low[axis] = at;
-      const double cost = kStepCost + (halfArea(low) * costOfLeaf(settings_.cost, left) +
-                                       halfArea(high) * costOfLeaf(settings_.cost, right)) /
-                                          area;
+      const double cost = step + (halfArea(low) * costOfLeaf(settings_.cost, left) +
+                                  halfArea(high) * costOfLeaf(settings_.cost, right)) /
+                                     area;
       if (cost < least) {
         least = cost;
         best = {axis, at};
@@ -185,8 +186,11 @@ Cut Builder::bestCut(std::span<const std::uint32_t> members, const Box& box) con
 }
 
 Box Builder::fitted(std::span<const std::uint32_t> members, const Box& box) const {
-  const float share = settings_.tight ? shares_.of(members.size()) : 1;
+  const auto positive = std::count_if(members.begin(), members.end(),
+                                      [&](std::uint32_t i) { return balls_[i].coefficient > 0; });
+  const float share = settings_.tight ? shares_.of(static_cast<std::size_t>(positive)) : 1;
   Box around;
+  if (!(share > 0)) return around;  // they never add up to the level
   for (const std::uint32_t i : members) {
     const Metaball& ball = balls_[i];
     if (settings_.tight && !(ball.coefficient > 0)) continue;
@@ -227,19 +231,21 @@ void Builder::discard(Arena& arena, Cell& cell) const {
   if (others == begin) cell = {Box{}, cell.from, 0, 0};
 }
 
-// `box` is a part of a cell, whose members go to the arena's end.
-Builder::Cell Builder::prepare(Arena& arena, const Cell& whole, const Box& box) const {
+// `box` is a part of a cell, cut off along an axis; its members go to the arena's end.
+Builder::Cell Builder::prepare(Arena& arena, const Cell& whole, const Box& box, int axis) const {
   Cell cell{box, arena.size(), 0, 0};
-  const Box wide = box.grown(slack_);
+  const float low = box.low[axis] - slack_, high = box.high[axis] + slack_;
+  arena.resize(cell.from + whole.count);
+  auto out = arena.begin() + static_cast<std::ptrdiff_t>(cell.from);
   for (std::size_t k = whole.from; k < whole.from + whole.count; ++k) {
-    const std::uint32_t i = arena[k];
-    if (reachesInto(balls_[i].center, balls_[i].support, wide)) arena.push_back(i);
+    const Metaball& ball = balls_[arena[k]];
+    *out = arena[k];
+    out += ball.center[axis] + ball.support > low && ball.center[axis] - ball.support < high ? 1 : 0;
   }
+  arena.erase(out, arena.end());
   cell.count = arena.size() - cell.from;
-  if (settings_.fit && cell.count > 0) {
-    cell.box = fitted(std::span(arena).subspan(cell.from), box);
-    if (!cell.box.empty()) keep(arena, cell);
-  }
+  if (settings_.fit && cell.count > 0) cell.box = fitted(std::span(arena).subspan(cell.from), box);
+  if (!cell.box.empty()) keep(arena, cell);
   if (settings_.discard && cell.count > 0 && cell.count <= kMostToDiscardFrom && !cell.box.empty())
     discard(arena, cell);
   if (cell.count == 0) cell.box = {};
@@ -264,7 +270,7 @@ bool Builder::pays(const Cell& cell, const Cell& left, const Cell& right) const 
   const auto share = [&](const Cell& part) {
     return halfArea(part.box) * costOfLeaf(settings_.cost, part.count) / std::max(halfArea(cell.box), 1e-300);
   };
-  return kStepCost + share(left) + share(right) < costOfLeaf(settings_.cost, cell.count);
+  return costOfStep(settings_.cost) + share(left) + share(right) < costOfLeaf(settings_.cost, cell.count);
 }
 
 void Builder::build(Tree& tree, std::uint32_t at, Arena& arena, Cell cell, int depth) {
@@ -278,8 +284,8 @@ void Builder::build(Tree& tree, std::uint32_t at, Arena& arena, Cell cell, int d
     if (worthwhile) {
       Box low = cell.box, high = cell.box;
       low.high[cut.axis] = high.low[cut.axis] = cut.at;
-      left = prepare(arena, cell, low);
-      right = prepare(arena, cell, high);
+      left = prepare(arena, cell, low, cut.axis);
+      right = prepare(arena, cell, high, cut.axis);
       worthwhile = pays(cell, left, right);
     }
     const double wanted = static_cast<double>(left.count + right.count);

@@ -2,19 +2,12 @@
 // Needs the other include/lists_*.glsl.
 #define MORE_SUMS uint looked, taken, unordered, longest;
 #include "include/sums.glsl"
+#include "include/loops.glsl"
 
 layout(std430, binding = 4) restrict buffer Control {
   uint uUnanswered;  // pixels to be done again, or to be gone on with
   uint uExhausted;   // pixels for which the driver ended a loop
 };
-
-// Mesa's software driver ends every loop once all loops of a group of pixels together have run 65,535 times:
-// from then on each runs once. true: this has happened, and nothing that was computed can be relied on.
-bool loopsAreEnded() {
-  int runs = 0;
-  for (int i = 0; i < uLists.w; ++i) ++runs;  // at least 2; a uniform, so that the loop stays one
-  return runs < uLists.w;
-}
 
 struct Trace {
   bool known;    // whether F > 0 where the ray begins

@@ -251,7 +251,7 @@ void main() {
     bool answered = castList(trace, texel, targetTexel, head, ray);
     uint flags = 0u;
     if (moved) atomicAdd(uSums[sumsOf(texel)].unordered, 1u);
-    if (answered && !loopsAreEnded()) {
+    if (answered && !loopsAreEnded(uLists.w)) {
       count(texel, trace, true);
 #ifndef LAYERS
       flags = gFlags;

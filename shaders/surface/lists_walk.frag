@@ -31,7 +31,7 @@ layout(std430, binding = 6) restrict buffer States {
 
 const float kFar = 1e30;
 
-// Nodes that a pixel looks at each time, about: as a group of 16 they stay below 65,535 (loopsAreEnded()).
+// Nodes that a pixel looks at each time, about: as a group of 16 they stay below 65,535 (include/loops.glsl).
 const int kMostLooks = 3500;
 int gLooks = 0;
 
@@ -220,7 +220,7 @@ void main() {
 #ifdef LAYERS
   endLayers();
 #endif
-  if (loopsAreEnded()) atomicAdd(uExhausted, 1u);
+  if (loopsAreEnded(uLists.w)) atomicAdd(uExhausted, 1u);
   uHeads[pixel] = head | flags;
   uStates[pixel] = state;
   count(texel, trace, finished);

@@ -1,0 +1,155 @@
+// The method "bvh" against the truth: exact with the guaranteed search; what the paper's misses is counted.
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "tests/gpu/surface_judge.h"
+#include "tests/support/exact_field.h"
+
+namespace meniscus {
+namespace {
+
+SurfaceSettings bvh(std::map<std::string, double> parameters = {}) {
+  return {"bvh", std::move(parameters)};
+}
+
+constexpr Projection kBoth[] = {Projection::perspective, Projection::orthographic};
+
+class BvhSurface : public test::SurfaceTest {};
+
+TEST_F(BvhSurface, RandomBalls) {
+  const test::SurfaceScene scene = test::randomScene(1000, 1);
+  for (const Projection projection : kBoth)
+    expectExact(judge(scene, viewOf(scene, {160, 120}, projection), bvh()));
+  EXPECT_EQ(stats.notConverged, 0u);
+  EXPECT_EQ(stats.overflow, 0u);
+  EXPECT_GT(detail("nodes met"), detail("cells searched"));
+  EXPECT_GT(stats.pixels, detail("hits"));
+}
+
+TEST_F(BvhSurface, EveryTree) {
+  const test::SurfaceScene scene = test::randomScene(300, 4);
+  for (const char* off : {"square", "fit", "tight", "discard"}) {
+    SCOPED_TRACE(off);
+    expectExact(judge(scene, viewOf(scene, {64, 48}), bvh({{off, 0}})));
+  }
+}
+
+TEST_F(BvhSurface, EveryMolecule) {
+  for (const auto& file : test::moleculeFiles()) {
+    SCOPED_TRACE(file.filename().string());
+    const test::SurfaceScene scene = test::moleculeScene(file);
+    expectExact(judge(scene, viewOf(scene, {96, 72}), bvh(), file.filename().string()));
+  }
+}
+
+TEST_F(BvhSurface, EveryKernel) {
+  for (const Kernel kernel : {Kernel{KernelShape::quartic}, Kernel{KernelShape::power, 7}}) {
+    SCOPED_TRACE(kernel.exponent);
+    const test::SurfaceScene scene(test::randomField(kernel, 0.3, 60, 4, 0, 7));
+    expectExact(judge(scene, viewOf(scene, {80, 60}), bvh()));
+  }
+}
+
+// More than a shader's array holds: the processor casts what is left to it.
+TEST_F(BvhSurface, TwoHundredCoincidentBalls) {
+  const test::SurfaceScene scene = test::coincidentBalls();
+  for (const Projection projection : kBoth) {
+    expectExact(judge(scene, viewOf(scene, {24, 18}, projection), bvh()));
+    EXPECT_GT(stats.overflow, 0u);
+    EXPECT_EQ(stats.overflow, static_cast<std::uint64_t>(detail("cast by the processor")));
+  }
+}
+
+TEST_F(BvhSurface, AThousandBallsAlongOneRay) {
+  const auto [scene, view] = test::ballsAlongOneRay();
+  expectExact(judge(scene, view, bvh()));
+}
+
+TEST_F(BvhSurface, ALatticeSeenAlongAnAxis) {
+  const auto [scene, view] = test::latticeAlongAxis();
+  expectExact(judge(scene, view, bvh()));
+  expectExact(judge(scene, latticeInPerspective(scene), bvh()));
+}
+
+TEST_F(BvhSurface, NegativeBallsHollowTheSurface) {
+  for (const Kernel kernel : {Kernel{}, Kernel{KernelShape::quartic}}) {
+    const test::SurfaceScene scene(test::randomField(kernel, 0.3, 80, 4, 3, 11));
+    for (const Projection projection : kBoth)
+      expectExact(judge(scene, viewOf(scene, {80, 60}, projection), bvh()));
+  }
+  const test::SurfaceView s = test::insideOfCavity();
+  expectExact(judge(s.scene, s.view, bvh()));
+}
+
+TEST_F(BvhSurface, CameraInsideBallsAndInsideTheSurface) {
+  const test::SurfaceScene scene = test::randomScene(200, 5);
+  int i = 0;
+  for (const View& view : viewsFromInside(scene)) {
+    SCOPED_TRACE(i);
+    expectExact(judge(scene, view, bvh(), "inside" + std::to_string(i++)));
+  }
+}
+
+TEST_F(BvhSurface, SupportsFromAThousandthToAThousand) {
+  const test::SurfaceScene scene = test::manyScales();
+  for (const double radius : {1000.0, 10.0, 0.1, 0.001}) {
+    SCOPED_TRACE(radius);
+    expectExact(judge(scene, viewOfScale(scene, radius), bvh(), "radius" + std::to_string(radius)));
+  }
+}
+
+TEST_F(BvhSurface, FarAwayAndAtWideAndNarrowAngles) {
+  test::SurfaceScene scene = test::randomScene(150, 3);
+  expectExact(judge(scene, viewFromAfar(scene, {96, 72}), bvh()));
+  for (const double degrees : {1.0, 150.0}) expectExact(judge(scene, viewOfAngle(scene, degrees), bvh()));
+  scene.primitives->origin = {1e6, -1e6, 1e6 + 0.123456789};
+  expectExact(judge(scene, viewOf(scene, {96, 72}), bvh()));
+}
+
+TEST_F(BvhSurface, LevelsNearZeroAndNearTheMaximum) {
+  for (const double level : {1e-2, 1e-4, 1e-6}) {
+    test::SurfaceScene scene = test::randomScene(60, 6);
+    scene.primitives->surfaces[0].level = level;
+    SCOPED_TRACE(level);
+    expectExact(judge(scene, viewOf(scene, {96, 72}), bvh(), "level" + std::to_string(level)));
+  }
+  for (const double below : {1e-2, 1e-3, 1e-4}) {
+    const test::SurfaceView s = test::nearMaximum(1, below);
+    SCOPED_TRACE(below);
+    expectExact(judge(s.scene, s.view, bvh(), "below" + std::to_string(below)));
+  }
+}
+
+TEST_F(BvhSurface, TangentRaysMissAndEnd) {
+  expectTangentRaysMiss(bvh());
+}
+
+TEST_F(BvhSurface, SpheresAndTwoSurfacesHideEachOther) {
+  const test::SurfaceScene scene = test::twoSurfaces();
+  expectExact(judge(scene, viewOf(scene, {96, 72}), bvh()));
+  expectSpheresAndSurfacesHideEachOther(bvh(), QuadricMethod::automatic, 1e-5f);
+}
+
+TEST_F(BvhSurface, AnyTilesOfTheTargetGiveTheSameBytes) {
+  expectAnyTilesGiveTheSameBytes(bvh());
+}
+
+// Rays that dip into the surface between two projections are missed, and nothing else.
+TEST_F(BvhSurface, ThePapersSearchMissesNearlyTangentRaysOnly) {
+  const test::SurfaceScene scene = test::randomScene(300, 3);
+  const HitErrors e = judge(scene, viewOf(scene, {160, 120}), bvh({{"search", 1}}));
+  EXPECT_EQ(e.falseHits, 0u);
+  EXPECT_GT(e.missed, 0u);
+  EXPECT_LE(e.missed, e.compared / 50);
+  EXPECT_EQ(stats.method, "bvh (the paper's search)");
+}
+
+TEST_F(BvhSurface, UnknownOptionsAreNamed) {
+  const test::SurfaceScene scene = test::randomScene(10, 1);
+  EXPECT_THROW(draw(scene, viewOf(scene, {16, 12}), bvh({{"search", 2}})), UsageError);
+  EXPECT_THROW(draw(scene, viewOf(scene, {16, 12}), bvh({{"depth", 2}})), UsageError);
+}
+
+}  // namespace
+}  // namespace meniscus
