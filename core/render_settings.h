@@ -72,6 +72,25 @@ struct OcclusionSettings {
   bool operator==(const OcclusionSettings&) const = default;
 };
 
+/// What mirrors and glass show where nothing is met.
+enum class Environment : std::uint8_t {
+  sky,        ///< procedural: bright at the horizon, blue above, brown below (core/traced_light.h)
+  background  ///< the picture's background colour
+};
+
+/// Rays from what is seen (core/traced_light.h): exact, and slow beside what they replace.
+struct TraceSettings {
+  int shadows = 0;     ///< rays per pixel to the key light, in place of a shadow map; 0 = off
+  int occlusion = 0;   ///< rays per pixel to the sky, in place of occlusion maps; 0 = off
+  int reflect = 0;     ///< surfaces mirror what is around them, so often one after the other; 0 = off
+  int refract = 0;     ///< surfaces are of glass, of which a ray passes so many walls; 0 = off
+  double index = 1.5;  ///< of refraction, 1..kMostIndex; also says how strongly surfaces mirror
+  Environment environment = Environment::sky;
+  bool light() const { return reflect > 0 || refract > 0; }
+  bool any() const { return shadows > 0 || occlusion > 0 || light(); }
+  bool operator==(const TraceSettings&) const = default;
+};
+
 /// How spheres, cylinders and ellipsoids are drawn.
 enum class QuadricMethod : std::uint8_t {
   splat,     ///< a rectangle for each, by the GPU (render/quadrics.h)
@@ -98,11 +117,15 @@ struct RenderSettings {
   FogSettings fog;
   QuadricMethod quadrics = QuadricMethod::automatic;
   SurfaceSettings surface;
+  TraceSettings trace;
   bool operator==(const RenderSettings&) const = default;
 };
 
 inline constexpr int kMaxSamples = 256;
 inline constexpr int kMaxShadowSamples = 256;
+inline constexpr int kMaxTracedRays = 4096;
+inline constexpr int kMaxBounces = 16;
+inline constexpr double kMostIndex = 10;
 inline constexpr int kMaxOcclusionDirections = 128;
 inline constexpr double kMaxLineWidth = 16;
 inline constexpr double kMaxUnsharpSigma = 340;

@@ -9,3 +9,5 @@ meniscus_test(NAME surface_mesh_test LABEL unit SOURCES surface_mesh_test.cpp LI
 find_package(assimp REQUIRED)  # an outside opinion on the files
 meniscus_test(NAME mesh_file_test LABEL unit SOURCES mesh_file_test.cpp LIBRARIES meniscus_io assimp::assimp)
 meniscus_test(NAME bvh_test LABEL unit SOURCES bvh_test.cpp LIBRARIES meniscus_core TBB::tbb)
+meniscus_test(NAME traced_light_test LABEL unit
+  SOURCES traced_light_test.cpp ${PROJECT_SOURCE_DIR}/tests/support/scenes.cpp LIBRARIES meniscus_core)

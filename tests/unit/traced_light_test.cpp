@@ -1,0 +1,335 @@
+// Secondary rays against closed forms: solids, mirrors, glass, occlusion.
+
+#include "core/traced_light.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "core/bvh/view_ray.h"
+#include "core/generated_scenes.h"
+#include "core/hit_errors.h"
+#include "core/quadric_tracer.h"
+#include "tests/support/random.h"
+#include "tests/support/scenes.h"
+
+namespace meniscus {
+namespace {
+
+using bvh::RayScratch;
+using bvh::SceneHit;
+using bvh::SceneRay;
+using bvh::SceneTracer;
+using bvh::Side;
+using bvh::TraceCounts;
+
+// What a scene's rays meet, in the same form as the truth.
+HitImage castAll(const SceneTracer& scene, const View& view) {
+  const bvh::ViewRays rays(view, scene.primitives().origin);
+  RayScratch scratch;
+  TraceCounts counts;
+  HitImage image;
+  image.size = view.size;
+  for (int y = 0; y < view.size.height; ++y) {
+    for (int x = 0; x < view.size.width; ++x) {
+      const auto ray = rays.through({x + 0.5, y + 0.5});
+      const SceneHit hit = scene.cast({ray.origin, ray.direction, ray.start}, scratch, counts);
+      const bool away = glm::dot(hit.normal, ray.direction) > 0;
+      image.distance.push_back(static_cast<float>(hit.distance));
+      image.normal.push_back(glm::vec3(rays.toView(away ? -hit.normal : hit.normal)));
+      image.id.push_back(hit.id);
+    }
+  }
+  return image;
+}
+
+TEST(SceneTracer, SolidsAndSurfacesAreMetWhereTheTruthSays) {
+  for (const StabilityRecipe& recipe : stabilityRecipes()) {
+    if (recipe.name != "needles" && recipe.name != "long-cylinders" && recipe.name != "end-on" &&
+        recipe.name != "cylinder-1e4" && recipe.name != "plain")
+      continue;
+    SCOPED_TRACE(recipe.name);
+    const StabilityScene scene = recipe.make(1, {40, 30});
+    const HitErrors e =
+        compareHits(castAll(SceneTracer(scene.surface), scene.view), traceScene(*scene.surface, scene.view));
+    EXPECT_EQ(e.missed + e.falseHits, 0u);
+    EXPECT_GT(e.compared, 20u);
+    EXPECT_LE(e.relativeRms, 1e-6);
+    EXPECT_LE(e.normalRmsDeg, 0.01);
+  }
+  for (const auto& primitives : {test::randomChain(200, 3), test::randomEllipsoids(200, 4, 0.3)}) {
+    const View view = test::viewOf(*primitives, {80, 60});
+    const HitErrors e = compareHits(castAll(SceneTracer(primitives), view), traceQuadrics(*primitives, view));
+    EXPECT_EQ(e.missed + e.falseHits, 0u);
+    EXPECT_GT(e.compared, 500u);
+    EXPECT_LE(e.relativeRms, 1e-6);
+    EXPECT_EQ(e.idsDiffer, 0u);
+  }
+}
+
+// A square in the plane y = 0, seen and lit from above.
+void addFloor(Primitives& primitives, float half) {
+  for (const glm::vec2 corner : {glm::vec2(-1, -1), glm::vec2(-1, 1), glm::vec2(1, 1), glm::vec2(1, -1)})
+    primitives.mesh.vertices.push_back({{half * corner.x, 0, half * corner.y}, {0, 1, 0}});
+  primitives.mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  primitives.mesh.surfaces = {{0xFFFFFF, 90}, {0xFFFFFF, 91}};
+}
+
+View fromAbove(const Primitives& primitives, ImageSize size) {
+  Camera camera;
+  camera.projection = Projection::orthographic;
+  camera.orientation = glm::angleAxis(1.5707963267948966, glm::dvec3(1, 0, 0));
+  camera.target = primitives.origin;
+  return makeView(camera, size, primitives.bounds());
+}
+
+// The sphere is wholly above the horizon of each point of the plane it lies on, so it hides of the sky, by
+// the cosine, (r / D)^2 cos(angle), where D is the distance of its centre: (r / D)^3.
+TEST(TracedLight, ASphereOnAPlaneHidesWhatTheClosedFormSays) {
+  auto primitives = std::make_shared<Primitives>();
+  addFloor(*primitives, 30);
+  primitives->spheres.push_back({{0, 2, 0}, 2, 0xFF0000, 1});
+  const View view = fromAbove(*primitives, {64, 48});
+  const SceneTracer scene(primitives);
+  TracedLightSettings settings;
+  settings.trace.occlusion = 4096;
+  settings.occlusion.radius = 0;
+  TracedPlanes planes;
+  TraceCounts counts;
+  traceLight(scene, {view, 0, 0, 64, 48}, settings, planes, counts);
+  const bvh::ViewRays rays(view, primitives->origin);
+  RayScratch scratch;
+  double worst = 0;
+  int compared = 0;
+  for (int y = 0; y < 48; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      const auto ray = rays.through({x + 0.5, y + 0.5});
+      const SceneHit hit = scene.cast({ray.origin, ray.direction, ray.start}, scratch, counts);
+      if (hit.id < 90) continue;
+      const double d2 = glm::dot(hit.point, hit.point) + 4;
+      const double truth = 8 / (d2 * std::sqrt(d2));
+      const std::uint32_t stored = planes.occlusion[static_cast<std::size_t>(y * 64 + x)];
+      EXPECT_EQ(stored >> 16, 65535u);
+      worst = std::max(worst, std::abs((stored & 65535u) / 65535.0 - truth));
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 1000);
+  EXPECT_LT(worst, 4e-3);
+}
+
+TEST(TracedLight, PartsOfAPicturesRaysAddUpToAllOfThem) {
+  auto primitives = std::make_shared<Primitives>();
+  addFloor(*primitives, 30);
+  primitives->spheres.push_back({{0, 2, 0}, 2, 0xFF0000, 1});
+  const View view = fromAbove(*primitives, {16, 12});
+  const SceneTracer scene(primitives);
+  TracedLightSettings settings;
+  settings.trace.occlusion = 256;
+  TracedPlanes whole, part;
+  TraceCounts counts;
+  traceLight(scene, {view, 0, 0, 16, 12}, settings, whole, counts);
+  std::vector<double> sums(whole.occlusion.size());
+  for (int sample = 0; sample < 4; ++sample) {
+    traceLight(scene, {view, 0, 0, 16, 12, {0, 0}, sample, 4}, settings, part, counts);
+    for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += (part.occlusion[i] & 65535u) / 4.0;
+  }
+  for (std::size_t i = 0; i < sums.size(); ++i) EXPECT_NEAR(sums[i], whole.occlusion[i] & 65535u, 1.5);
+  // A part of the picture is the same as that part of the whole.
+  traceLight(scene, {view, 5, 3, 8, 7}, settings, part, counts);
+  for (int y = 0; y < 7; ++y)
+    for (int x = 0; x < 8; ++x)
+      EXPECT_EQ(part.occlusion[static_cast<std::size_t>(y * 8 + x)],
+                whole.occlusion[static_cast<std::size_t>((y + 3) * 16 + x + 5)]);
+}
+
+TEST(TracedLight, FresnelAndSnell) {
+  for (const double index : {1.0, 1.33, 1.5, 2.4}) {
+    const double straight = (index - 1) * (index - 1) / ((index + 1) * (index + 1));
+    EXPECT_NEAR(fresnel(1, 1 / index), straight, 1e-15);
+    EXPECT_NEAR(fresnel(1, index), straight, 1e-15);
+    EXPECT_NEAR(fresnel(1e-9, 1 / index), index > 1 ? 1 : 0, 1e-7);
+    for (double angle = 0.05; angle < 1.55; angle += 0.1) {
+      const glm::dvec3 normal(0, 1, 0), in(std::sin(angle), -std::cos(angle), 0);
+      const auto out = refracted(in, normal, 1 / index);
+      ASSERT_TRUE(out);
+      EXPECT_NEAR(index * out->x, in.x, 1e-14);
+      EXPECT_NEAR(glm::length(*out), 1, 1e-14);
+      // The way back loses the same share.
+      EXPECT_NEAR(fresnel(-out->y, index), fresnel(std::cos(angle), 1 / index), 1e-12);
+      if (index * in.x > 1) {
+        EXPECT_EQ(fresnel(std::cos(angle), index), 1);
+        EXPECT_FALSE(refracted(in, normal, index));
+      }
+    }
+    // At Brewster's angle half of the light, by polarization, is not mirrored at all.
+    const double brewster = std::atan(index), inside = std::asin(std::sin(brewster) / index);
+    const double across = std::sin(brewster - inside) / std::sin(brewster + inside);
+    EXPECT_NEAR(fresnel(std::cos(brewster), 1 / index), across * across / 2, 1e-14);
+  }
+}
+
+// One ball as a surface, and the radius that it has.
+struct Ball {
+  std::shared_ptr<Primitives> primitives = std::make_shared<Primitives>();
+  glm::dvec3 center{1, -2, 3};
+  double radius;
+  Ball() {
+    primitives->surfaces.resize(1);
+    MetaballField& field = primitives->surfaces[0];
+    field.balls = {{glm::vec3(center), 4, 1, 0x808080, 1}};
+    radius = 4 * coreShare(field.kernel, field.level, 1);
+  }
+  View view() const { return test::viewOf(*primitives, {32, 32}); }
+};
+
+TracedLightSettings glassOf(double index, int reflect, int refract) {
+  TracedLightSettings settings;
+  settings.trace.index = index;
+  settings.trace.reflect = reflect;
+  settings.trace.refract = refract;
+  return settings;
+}
+
+TEST(TracedLight, AGlassBallBendsRaysAsGeometrySays) {
+  const Ball ball;
+  const View view = ball.view();
+  const SceneTracer scene(ball.primitives);
+  const double index = 1.5;
+  const TracedLightSettings settings = glassOf(index, 0, 2);
+  const LightTracer tracer(scene, view, settings);
+  const auto sky = [&](const glm::dvec3& d) { return skyLight(view.rotation * d); };
+  RayScratch scratch;
+  TraceCounts counts;
+  test::Random random(5);
+  for (int i = 0; i < 2000; ++i) {
+    const glm::dvec3 eye = ball.center + 12.0 * random.direction();
+    const glm::dvec3 aim = ball.center + ball.radius * 0.98 * random.direction();
+    const glm::dvec3 d = glm::normalize(aim - eye);
+    const glm::dvec3 light = tracer.radiance({eye, d}, scratch, counts);
+
+    const double along = glm::dot(ball.center - eye, d);
+    const glm::dvec3 aside = eye + along * d - ball.center;
+    const glm::dvec3 in = eye + (along - std::sqrt(ball.radius * ball.radius - glm::dot(aside, aside))) * d;
+    const glm::dvec3 n1 = (in - ball.center) / ball.radius;
+    const double c1 = -glm::dot(d, n1), f1 = fresnel(c1, 1 / index);
+    const glm::dvec3 within = *refracted(d, n1, 1 / index);
+    const glm::dvec3 out = in - 2 * glm::dot(within, in - ball.center) * within;
+    const glm::dvec3 n2 = (ball.center - out) / ball.radius;
+    const double c2 = -glm::dot(within, n2), f2 = fresnel(c2, index);
+    const glm::dvec3 expected =
+        f1 * sky(d + 2 * c1 * n1) +
+        (1 - f1) * (f2 * sky(within + 2 * c2 * n2) + (1 - f2) * sky(*refracted(within, n2, index)));
+    for (int k = 0; k < 3; ++k) ASSERT_NEAR(light[k], expected[k], 1e-6) << i;
+  }
+}
+
+TEST(TracedLight, AMirrorBallShowsTheSkyBehindTheViewer) {
+  const Ball ball;
+  const View view = ball.view();
+  const SceneTracer scene(ball.primitives);
+  const LightTracer tracer(scene, view, glassOf(3, 1, 0));
+  RayScratch scratch;
+  TraceCounts counts;
+  const glm::dvec3 d = glm::normalize(ball.center + glm::dvec3(0.4, 0.9, 0) - glm::dvec3(1, -2, 20));
+  const SceneHit hit = scene.cast({{1, -2, 20}, d}, scratch, counts);
+  ASSERT_TRUE(hit);
+  const glm::dvec4 light = tracer.surfaceLight(hit, d, scratch, counts);
+  const glm::dvec3 n = glm::normalize(hit.point - ball.center);
+  const double f = fresnel(-glm::dot(d, n), 1.0 / 3);
+  const glm::dvec3 expected = f * skyLight(view.rotation * (d - 2 * glm::dot(d, n) * n));
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(light[k], expected[k], 1e-7);
+  EXPECT_NEAR(light.w, 1 - f, 1e-7);
+}
+
+// Light that meets the wall from within beyond the critical angle stays in the ball, at the same angle for
+// ever; the last direction's sky is what is seen.
+TEST(TracedLight, TotalReflectionKeepsLightWithin) {
+  const Ball ball;
+  const View view = ball.view();
+  const SceneTracer scene(ball.primitives);
+  const double index = 1.5;
+  RayScratch scratch;
+  TraceCounts counts;
+  test::Random random(8);
+  for (const int walls : {1, 2, 7}) {
+    const LightTracer tracer(scene, view, glassOf(index, 0, walls));
+    for (int i = 0; i < 200; ++i) {
+      const glm::dvec3 n = random.direction(), start = ball.center + ball.radius * n;
+      const glm::dvec3 side = glm::normalize(glm::cross(n, random.direction()));
+      const double sine = random.uniform(1.001 / index, 0.98);
+      glm::dvec3 d = sine * side - std::sqrt(1 - sine * sine) * n, at = start;
+      const glm::dvec3 light =
+          tracer.radiance({start, d, 0, bvh::kInfinity, {bvh::kNoSolid, 0, Side::inside}}, scratch, counts);
+      for (int k = 0; k < walls + 1; ++k) {
+        at -= 2 * glm::dot(d, at - ball.center) * d;
+        const glm::dvec3 wall = (at - ball.center) / ball.radius;
+        if (k < walls + 1) d -= 2 * glm::dot(d, wall) * wall;
+      }
+      const glm::dvec3 sky = skyLight(view.rotation * d);
+      for (int k = 0; k < 3; ++k) ASSERT_NEAR(light[k], sky[k], 1e-5) << walls;
+    }
+  }
+}
+
+// Wherever light of strength 1 comes from all around, that is what glass shows, however many walls, and
+// nothing is ever brighter than what there is.
+TEST(TracedLight, GlassNeitherMakesNorLosesLight) {
+  const auto primitives = packedBalls(60, 7);
+  const View view = viewOfAll(*primitives, {24, 18});
+  const SceneTracer scene(primitives);
+  const bvh::ViewRays rays(view, primitives->origin);
+  RayScratch scratch;
+  TraceCounts counts;
+  for (const auto& [reflect, refract] : {std::pair{0, 1}, std::pair{2, 3}, std::pair{4, 16}}) {
+    TracedLightSettings white = glassOf(1.5, reflect, refract);
+    white.trace.environment = Environment::background;
+    white.background.color = 0xFFFFFF;
+    const TracedLightSettings sky = glassOf(1.5, reflect, refract);
+    const LightTracer inWhite(scene, view, white), inSky(scene, view, sky);
+    for (int y = 0; y < 18; ++y) {
+      for (int x = 0; x < 24; ++x) {
+        const auto ray = rays.through({x + 0.5, y + 0.5});
+        const SceneRay at{ray.origin, ray.direction, ray.start};
+        const glm::dvec3 light = inWhite.radiance(at, scratch, counts);
+        EXPECT_NEAR(light.x, 1, 1e-12);
+        EXPECT_NEAR(light.z, 1, 1e-12);
+        const glm::dvec3 blue = inSky.radiance(at, scratch, counts);
+        EXPECT_LE(std::max({blue.x, blue.y, blue.z}), 0.96 + 1e-12);
+        EXPECT_GE(std::min({blue.x, blue.y, blue.z}), 0.16 - 1e-12);
+      }
+    }
+  }
+}
+
+// Nothing convex hides itself, from any of its points: no acne.
+TEST(TracedLight, ConvexThingsDoNotShadowThemselves) {
+  auto primitives = std::make_shared<Primitives>();
+  primitives->spheres = {{{-20, 0, 0}, 3, 0xFFFFFF, 1}};
+  primitives->cylinders = {{{-8, -3, 0}, 2, {-8, 3, 1}, 0xFFFFFF, 0xFFFFFF, 2, 3}};
+  primitives->ellipsoids = {{{4, 0, 0}, 1, {3, 0, 0}, {0, 2, 0}, 0xFFFFFF, 4}};
+  primitives->surfaces.resize(1);
+  primitives->surfaces[0].balls = {{{18, 0, 0}, 6, 1, 0xFFFFFF, 5}};
+  const View view = test::viewOf(*primitives, {200, 60});
+  TracedLightSettings settings;
+  settings.trace.shadows = 1;
+  settings.trace.occlusion = 16;
+  settings.occlusion.radius = 5;
+  settings.shadows.mode = ShadowMode::hard;
+  TracedPlanes planes;
+  TraceCounts counts;
+  traceLight(SceneTracer(primitives), {view, 0, 0, 200, 60}, settings, planes, counts);
+  int lit = 0, seen = 0;
+  for (std::size_t i = 0; i < planes.visibility.size(); ++i) {
+    EXPECT_EQ(planes.occlusion[i] & 65535u, 0u);
+    EXPECT_TRUE(planes.visibility[i] == 0 || planes.visibility[i] == 65535);
+    lit += planes.visibility[i] > 0 ? 1 : 0;
+    seen += planes.occlusion[i] > 0 ? 1 : 0;
+  }
+  EXPECT_GT(seen, 1000);
+  EXPECT_GT(lit, seen / 2);  // and what does not is turned away from the light
+}
+
+}  // namespace
+}  // namespace meniscus
