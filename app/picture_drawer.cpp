@@ -74,6 +74,11 @@ RenderSettings settingsFor(const RenderOptions& options) {
   settings.samples = options.samples;
   settings.shadows = options.shadows;
   settings.occlusion = options.occlusion;
+  settings.trace = options.trace;
+  // What is traced is on.
+  if (options.trace.shadows > 0 && options.shadows.mode == ShadowMode::off)
+    settings.shadows.mode = ShadowMode::soft;
+  settings.occlusion.on = options.occlusion.on || options.trace.occlusion > 0;
   settings.lines = options.lines;
   settings.depthUnsharp = options.depthUnsharp;
   settings.fog = options.fog;
@@ -83,7 +88,8 @@ RenderSettings settingsFor(const RenderOptions& options) {
 }
 
 Lighting lightFor(const RenderOptions& options) {
-  Lighting light = options.occlusion.on ? ambientLighting() : Lighting{};
+  const bool occlusion = options.occlusion.on || options.trace.occlusion > 0;
+  Lighting light = occlusion ? ambientLighting() : Lighting{};
   light.key.intensity = options.keyLight.value_or(light.key.intensity);
   light.fill.intensity = options.fillLight.value_or(light.fill.intensity);
   light.ambient = options.ambientLight.value_or(light.ambient);

@@ -283,6 +283,38 @@ void addLightOptions(CLI::App& app, RenderOptions& o) {
               });
 }
 
+void addTraceOptions(CLI::App& app, RenderOptions& o) {
+  OptionGroup group(app, "Ray tracing");
+  const auto rays = [&](const char* name, const char* help, int most, int& target) {
+    group.value(name, "N", help, [most, &target](auto& n, auto& v) { target = parseInteger(n, v, 0, most); });
+  };
+  rays("--trace-shadows",
+       "Rays per pixel to the key light, exact, in place of a shadow\n"
+       "map, 0 to 4096; soft unless --shadows says hard [0: off]",
+       kMaxTracedRays, o.trace.shadows);
+  rays("--trace-ao",
+       "Rays per pixel to all around, for --occlusion, 0 to 4096\n"
+       "[0: off]",
+       kMaxTracedRays, o.trace.occlusion);
+  rays("--reflect",
+       "Surfaces mirror their surroundings, so many times one after\n"
+       "the other, 0 to 16 [0: off]",
+       kMaxBounces, o.trace.reflect);
+  rays("--refract",
+       "Surfaces are of glass; light passes so many of its walls,\n"
+       "0 to 16 [0: off]",
+       kMaxBounces, o.trace.refract);
+  group.value("--refractive-index", "N",
+              "Of the glass, 1 to 10; also how strongly surfaces mirror\n"
+              "[1.5]",
+              [&o](auto& n, auto& v) { o.trace.index = parseNumber(n, v, 1, kMostIndex); });
+  group.value("--environment", "sky|background",
+              "What mirrors and glass show where there is nothing else [sky]", [&o](auto& n, auto& v) {
+                o.trace.environment = parseChoice<Environment>(
+                    n, v, {{"sky", Environment::sky}, {"background", Environment::background}});
+              });
+}
+
 void addLineOptions(CLI::App& app, RenderOptions& o) {
   OptionGroup group(app, "Lines and depth");
   group.value("--outlines", "LIST",
@@ -508,6 +540,7 @@ void addAllOptions(CLI::App& app, RenderOptions& options) {
   addLabelOptions(app, options);
   addStyleOption(app);
   addLightOptions(app, options);
+  addTraceOptions(app, options);
   addLineOptions(app, options);
   addCameraOptions(app, options);
   addStructureOptions(app, options);
@@ -523,6 +556,8 @@ void requireSettingsConsistent(const RenderOptions& o) {
     throw UsageError("--fog-start: must be less than --fog-end (they are 0.2 and 1 unless given)");
   if (o.surface.parameters.size() > 0 || o.surface.method != "auto" || o.surface.translucent())
     surfaceParametersFor(surfaceMethodFor(o.surface), o.surface);  // throws if it has no such parameter
+  if (o.trace.any() && o.surface.translucent())
+    throw UsageError("--opacity: rays are traced through opaque surfaces and glass (--refract) only");
   if (!o.output.empty() && (isFilm(o.output) || imageTypeOf(o.output) != ImageType::exr) &&
       o.layers != Layers{})
     throw UsageError("--channels: is for OpenEXR; a PNG holds the colour only, so let OUT end in .exr");

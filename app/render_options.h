@@ -56,6 +56,7 @@ struct RenderOptions {
   std::optional<double> keyLight, fillLight, ambientLight, highlight;  ///< nothing = the default
   ShadowSettings shadows;
   OcclusionSettings occlusion;
+  TraceSettings trace;
   SilhouetteSettings lines;
   DepthUnsharpSettings depthUnsharp;
   FogSettings fog;

@@ -23,6 +23,7 @@
 #include "render/post/shadow.h"
 #include "render/post/silhouette.h"
 #include "render/post/surface_reader.h"
+#include "render/post/traced_light.h"
 #include "render/post/translucent.h"
 #include "render/quadrics.h"
 #include "render/surface_passes.h"
@@ -119,6 +120,7 @@ struct Frame {
   UnsharpKernel unsharp = {};
   int margin = 0;            // of a tile: how far its pixels' effects look [pixels]
   bool translucent = false;  // surfaces are laid over the rest, layer by layer
+  bool traced = false;       // some of the light
 };
 
 // What becomes of the surfaces of a scene.
@@ -156,6 +158,7 @@ struct Renderer::Impl {
   gl::Buffer viewUniforms;
   SurfaceReader surfaceReader;
   EffectsChoice effects;
+  TracedLight tracedLight;
   KeptShadowMap keptShadowMap;
   std::shared_ptr<const Primitives> primitives = std::make_shared<Primitives>();
   std::shared_ptr<const Primitives> withoutSurfaces;  // the same; made when it is wanted first
@@ -224,14 +227,23 @@ struct Renderer::Impl {
     surfaceReader.begin(block, tile.width, tile.height);
     SurfaceReader* const reader = effects.processor ? &surfaceReader : nullptr;
     LightRefs light;
-    if (frame.shadowMap.depth) {
+    if (frame.traced) {
+      tracedLight.add(graph, frame.view, tile, sampleShift, light);
+    } else {
+      graph.leaveOut("pass trace", "no rays are traced");
+    }
+    if (light.visibility.valid()) {
+      graph.leaveOut("pass shadow", "shadows are traced");
+    } else if (frame.shadowMap.depth) {
       light.visibility = addShadow(graph, frame.settings.shadows, frame.shadowMap, shadowUniforms, shaders,
                                    gbuffer, tile.width, tile.height, reader);
       if (effects.processor) graph.leaveOut("program of shadow", effects.reason);
     } else {
       graph.leaveOut("pass shadow", "shadows are off");
     }
-    if (frame.occlusion) {
+    if (light.occlusion.valid()) {
+      graph.leaveOut("pass occlusion", "ambient occlusion is traced");
+    } else if (frame.occlusion) {
       light.occlusion = addOcclusion(graph, occlusionBuffers, shaders, gbuffer, tile.width, tile.height);
     } else {
       graph.leaveOut("pass occlusion", "ambient occlusion is off");
@@ -303,6 +315,7 @@ void Renderer::setPrimitives(std::shared_ptr<const Primitives> primitives) {
   impl_->quadrics.clear();
   impl_->triangles.clear();
   impl_->tileQuadrics.setPrimitives(impl_->primitives);
+  impl_->tracedLight.setPrimitives(impl_->primitives);
   impl_->occlusionBuffers.clear();
   impl_->silhouetteUniforms.clearGroups();
   impl_->keptShadowMap = {};
@@ -366,7 +379,7 @@ void Renderer::Impl::setEffects(Frame& frame) {
   labelBuffers.set(labels, labelColors, frame.view);
   frame.unsharp = unsharpKernel(unsharpSigma(settings.depthUnsharp, frame.view));
   frame.margin = std::max({reachOf(settings.lines), reachOf(settings.depthUnsharp, frame.view),
-                           reachOf(settings.occlusion, settings.samples)});
+                           settings.trace.occlusion > 0 ? 0 : reachOf(settings.occlusion, settings.samples)});
 }
 
 // Counted as a pass, though the processor draws them.
@@ -415,6 +428,7 @@ void Renderer::Impl::drawTile(const Frame& frame, const Tile& part, const gl::Te
     if (frame.shadowMap.depth)
       shadowUniforms.set(frame.settings.shadows, frame.view, frame.shadowMap, sample, samples);
     if (frame.occlusion) occlusionBuffers.chooseDirections(sample, samples, tile);
+    if (frame.traced) tracedLight.choose(sample, samples);
   };
   if (frame.shade.final) {
     setShadow(0);
@@ -455,7 +469,8 @@ void Renderer::renderPicture(const View& view, const Lighting& lighting, const B
   Frame frame{view,
               settings,
               {lighting, background, settings.occlusion, settings.fog, settings.depthUnsharp, settings.lines,
-               settings.surface.opacity, settings.samples == 1, layout.format != PixelFormat::rgbaFloat},
+               settings.surface.opacity, settings.trace.light() && !r.primitives->empty(),
+               settings.samples == 1, layout.format != PixelFormat::rgbaFloat},
               layout.layers,
               {}};
   const bool color = layout.layers.color;
@@ -463,13 +478,19 @@ void Renderer::renderPicture(const View& view, const Lighting& lighting, const B
   const bool anyOpaque = !r.primitives->empty() && !(frame.translucent && r.primitives->onlySurfaces());
   if (color) r.setEffects(frame);
   r.shadeUniforms.set(frame.shade);
-  if (color && settings.shadows.mode != ShadowMode::off && anyOpaque) {
+  const TraceSettings& trace = settings.trace;
+  frame.traced = color && trace.any() && !r.primitives->empty();
+  if (frame.traced) {
+    MENISCUS_CHECK(!frame.translucent);
+    r.tracedLight.set({trace, settings.shadows, settings.occlusion, lighting, background});
+  }
+  if (color && trace.shadows == 0 && settings.shadows.mode != ShadowMode::off && anyOpaque) {
     Stopwatch watch(r.stats.drawMs);
     r.drawShadowMap(frame);
   } else {
     r.keptShadowMap = {};
   }
-  if (color && settings.occlusion.on && anyOpaque) {
+  if (color && trace.occlusion == 0 && settings.occlusion.on && anyOpaque) {
     Stopwatch watch(r.stats.drawMs);
     r.drawOcclusion(frame);
   }

@@ -43,7 +43,7 @@ glm::vec4 unsharpOf(const ShadeSettings& settings) {
   constexpr double kUnlimited = 1e6;
   const DepthUnsharpSettings& unsharp = settings.depthUnsharp;
   return glm::vec4(glm::dvec4(unsharp.strength, unsharp.mode == UnsharpMode::halo ? 0.0 : kUnlimited,
-                              settings.surfaceOpacity, 0.0));
+                              settings.surfaceOpacity, settings.traced ? 1.0 : 0.0));
 }
 
 // The bound picture becomes its background: what the shader would compute of no light, and a stored colour
@@ -87,6 +87,7 @@ void addShade(FrameGraph& graph, const ShadeSettings& settings, const ShadeUnifo
   if (light.difference.valid()) reads.push_back(light.difference);
   if (light.lines.valid()) reads.push_back(light.lines);
   if (light.labels.valid()) reads.push_back(light.labels);
+  if (light.traced.valid()) reads.push_back(light.traced);
   const bool fog = settings.fog.strength > 0;
   graph.addPass("shade", reads, {{target, 0}, {gbuffer.depth, FrameGraph::kTestedDepth}},
                 [settings, fog, &uniforms, &shaders, gbuffer, light](const PassContext& context) {
@@ -116,6 +117,9 @@ void addShade(FrameGraph& graph, const ShadeSettings& settings, const ShadeUnifo
                   if (light.labels.valid()) {
                     flags.insert("LABELS");
                     glBindTextureUnit(7, context.texture(light.labels).object.name());
+                  }
+                  if (light.traced.valid()) {
+                    glBindTextureUnit(8, context.texture(light.traced).object.name());
                   }
                   glBindTextureUnit(0, context.texture(gbuffer.albedo).object.name());
                   glBindTextureUnit(1, context.texture(gbuffer.normal).object.name());

@@ -18,6 +18,7 @@ struct ShadeSettings {
   DepthUnsharpSettings depthUnsharp;
   SilhouetteSettings lines;
   double surfaceOpacity = 1;  ///< of translucent surfaces (translucent.h)
+  bool traced = false;        ///< there are mirrors or glass (traced_light.h)
   bool final = false;         ///< writes the picture itself; otherwise adds a sample to a sum (resolve.h)
   bool encodeSrgb = false;    ///< of the picture
 };
@@ -40,6 +41,7 @@ struct LightRefs {
   TextureRef difference;  ///< in depth from the surroundings (depth_unsharp.h)
   TextureRef labels;      ///< over everything, and how much they cover (labels.h)
   TextureRef lines;       ///< share of the pixel that is line (silhouette.h)
+  TextureRef traced;      ///< light of mirrors and glass, and the share left of the rest (traced_light.h)
 };
 
 /// Adds the pass; it draws into `target`.

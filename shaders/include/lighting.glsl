@@ -8,7 +8,7 @@ layout(std140, binding = 1) uniform ShadeUniforms {
   vec4 uBackdrop;  // premultiplied linear
   vec4 uFog;       // strength; start and 1 / (end - start) in shares of the scene's depth range; 0
   vec4 uLine;      // linear, opacity
-  vec4 uUnsharp;   // strength, largest brightening; opacity of translucent surfaces; 0
+  vec4 uUnsharp;   // strength, largest brightening; opacity of translucent surfaces; 1: mirrors or glass
   // x: linear light of each 8-bit sRGB value. Three pow() per pixel cost llvmpipe more, above all to compile.
   vec4 uLinear[256];
 };

@@ -28,6 +28,9 @@ layout(binding = 5) uniform sampler2D tDepth;
 #ifdef LINES
 layout(binding = 6) uniform sampler2D tLines;  // share of the pixel that is line
 #endif
+// Light that is added, and the share left of what is here. Asked about by a uniform: another flag would make
+// twice as many programs of all.
+layout(binding = 8) uniform sampler2D tTraced;
 #ifdef LABELS
 layout(binding = 7) uniform sampler2D tLabels;  // premultiplied, over everything
 #endif
@@ -50,6 +53,10 @@ void main() {
     sky = 1.0 - uAmbient.w * min(hidden.x / max(hidden.y, 1e-5), 1.0);
 #endif
     light = vec4(lit(linearColor(uvec3(albedo.rgb * 255.0 + 0.5)), normal, toEye, visible, sky), 1.0);
+    if (uUnsharp.w > 0.5) {
+      vec4 traced = texelFetch(tTraced, at, 0);
+      light.rgb = traced.a * light.rgb + traced.rgb;
+    }
 #ifdef UNSHARP
     // Shifted on the scale of perceived brightness, of which the square root is near enough.
     float shift = min(uUnsharp.x * texelFetch(tDifference, at, 0).r, uUnsharp.y);

@@ -65,6 +65,25 @@ TEST_F(RenderLight, occlusionDarkensByRadiusAndStrength) {
                                       "occlusion gather", "shade"}));
 }
 
+TEST_F(RenderLight, tracedRaysTakeThePlaceOfMaps) {
+  const std::vector<std::string> maps{"--occlusion", "on", "--occlusion-radius", "0", "--shadows", "hard"};
+  std::vector<std::string> rays = maps;
+  for (const char* more : {"--trace-ao", "64", "--trace-shadows", "1"}) rays.push_back(more);
+  EXPECT_NEAR(brightness(render(kProtein, rays)), brightness(render(kProtein, maps)), 0.02);
+  EXPECT_EQ(render(kProtein, {"--trace-ao", "8"}).pixels,
+            render(kProtein, {"--trace-ao", "8", "--occlusion", "on"}).pixels)
+      << "what is traced is on";
+  const std::vector<std::string> mirror{"--representation",   "surface", "--reflect", "1",
+                                        "--refractive-index", "4"};
+  std::vector<std::string> grey = mirror;
+  for (const char* more : {"--environment", "background"}) grey.push_back(more);
+  EXPECT_NE(render(kProtein, mirror).pixels, render(kProtein, grey).pixels);
+  EXPECT_EQ(passes(stats(kProtein, grey)), (std::vector<std::string>{"surface", "trace", "shade"}));
+  expectError(run({"render", molecule(kProtein), "-o", "a.png", "--representation", "surface", "--refract",
+                   "2", "--opacity", "0.5"}),
+              ExitCode::badUsage, {"--opacity", "--refract"});
+}
+
 TEST_F(RenderLight, wrongValuesNameWhatIsAllowed) {
   const auto refused = [this](const char* option, const char* value, const char* allowed) {
     expectError(run({"render", molecule(kProtein), "-o", "a.png", option, value}), ExitCode::badUsage,
@@ -77,6 +96,12 @@ TEST_F(RenderLight, wrongValuesNameWhatIsAllowed) {
   refused("--occlusion-radius", "-1", "0");
   refused("--occlusion-strength", "2", "1");
   refused("--occlusion-directions", "9", "128");
+  refused("--trace-ao", "5000", "4096");
+  refused("--trace-shadows", "-1", "0");
+  refused("--reflect", "17", "16");
+  refused("--refract", "some", "16");
+  refused("--refractive-index", "0.5", "10");
+  refused("--environment", "moon", "sky");
 }
 
 }  // namespace
