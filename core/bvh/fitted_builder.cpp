@@ -1,14 +1,17 @@
 #include "core/bvh/fitted_builder.h"
 
 #include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 #include <tbb/parallel_reduce.h>
+#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <numeric>
 #include <span>
+#include <utility>
 
 #include "core/bvh/subtree.h"
 
@@ -25,6 +28,42 @@ constexpr int kFewBins = 6;
 constexpr double kMostCopies = 16;
 // Nodes with more are counted by several threads.
 constexpr std::size_t kLeastToCountApart = 65536;
+
+// What construction needs of a ball, side by side in memory.
+struct Place {
+  glm::vec3 center;
+  float support;
+  bool positive;
+  std::uint32_t ball;  // in the field
+};
+
+// The bits of three coordinates of 10 bits, interleaved (Morton 1966).
+std::uint32_t mortonCode(const glm::vec3& share) {
+  const auto spread = [](float v) {
+    auto x = static_cast<std::uint32_t>(std::clamp(v * 1024, 0.0f, 1023.0f));
+    x = (x | x << 16) & 0x030000FFu;
+    x = (x | x << 8) & 0x0300F00Fu;
+    x = (x | x << 4) & 0x030C30C3u;
+    return (x | x << 2) & 0x09249249u;
+  };
+  return spread(share.x) << 2 | spread(share.y) << 1 | spread(share.z);
+}
+
+// So that what is close in space is close in memory.
+std::vector<Place> placesOf(const MetaballField& field, const Box& around) {
+  const glm::vec3 size = glm::max(around.high - around.low, glm::vec3(1e-30f));
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> order(field.balls.size());
+  tbb::parallel_for(std::size_t{0}, order.size(), [&](std::size_t i) {
+    order[i] = {mortonCode((field.balls[i].center - around.low) / size), static_cast<std::uint32_t>(i)};
+  });
+  tbb::parallel_sort(order);
+  std::vector<Place> places(order.size());
+  tbb::parallel_for(std::size_t{0}, order.size(), [&](std::size_t i) {
+    const Metaball& ball = field.balls[order[i].second];
+    places[i] = {ball.center, ball.support, ball.coefficient > 0, order[i].second};
+  });
+  return places;
+}
 
 // Of n balls one has at least an n-th of the level where F >= 0: the share of its support within which it
 // has. By n; larger ones rounded up to a power of two.
@@ -69,13 +108,16 @@ struct Counts {
 class Builder {
  public:
   Builder(const MetaballField& field, const TreeSettings& settings, float slack)
-      : balls_(field.balls), settings_(settings), slack_(slack), shares_(field) {}
+      : settings_(settings), slack_(slack), shares_(field) {
+    for (const Metaball& ball : field.balls)
+      box_.add({ball.center - ball.support, ball.center + ball.support});
+    balls_ = placesOf(field, box_);
+  }
 
   Tree run() {
     Arena arena(balls_.size());
     std::iota(arena.begin(), arena.end(), 0u);
-    Cell all{Box{}, 0, balls_.size(), 0};
-    for (const Metaball& ball : balls_) all.box.add({ball.center - ball.support, ball.center + ball.support});
+    const Cell all{box_, 0, balls_.size(), 0};
     Cell root = prepare(arena, all, all.box, 0);
     root.room = kMostCopies * static_cast<double>(balls_.size());
     return root.box.empty() ? Tree{} : subtree(std::move(arena), root, 0);
@@ -112,7 +154,8 @@ class Builder {
   void discard(Arena& arena, Cell& cell) const;
   void keep(Arena& arena, Cell& cell) const;
 
-  const std::vector<Metaball>& balls_;
+  Box box_;
+  std::vector<Place> balls_;
   TreeSettings settings_;
   float slack_;
   Shares shares_;
@@ -123,7 +166,7 @@ Counts Builder::countIn(std::span<const std::uint32_t> members, const Box& box, 
   Counts counts;
   const glm::vec3 last(static_cast<float>(bins) - 0.5f);
   for (const std::uint32_t i : members) {
-    const Metaball& ball = balls_[i];
+    const Place& ball = balls_[i];
     const glm::vec3 middle = ball.center - box.low;
     const float reach = ball.support + slack_;
     const glm::vec3 from = glm::clamp((middle - reach) * scale, glm::vec3(0), last);
@@ -159,41 +202,42 @@ Cut Builder::bestCut(std::span<const std::uint32_t> members, const Box& box) con
         });
   }
   Cut best;
-  const double step = costOfStep(settings_.cost);
-  const double area = std::max(halfArea(box), 1e-300);
   double least = costOfLeaf(settings_.cost, members.size());
+  const double step = costOfStep(settings_.cost), area = std::max(halfArea(box), 1e-300);
   for (int axis = 0; axis < 3; ++axis) {
     if (!(size[axis] > 0)) continue;
     const auto a = static_cast<std::size_t>(axis);
+    // Half the surface of a part is what its ends have, and what its sides have by its length.
+    const double across = static_cast<double>(size[(axis + 1) % 3]),
+                 up = static_cast<double>(size[(axis + 2) % 3]);
+    const double ends = across * up / area, sides = (across + up) / area;
     std::size_t left = 0, right = members.size();
-    Box low = box, high = box;
     for (int k = 1; k < bins; ++k) {
       left += counts.begin[a][static_cast<std::size_t>(k - 1)];
       right -= counts.end[a][static_cast<std::size_t>(k - 1)];
-      const float at = box.low[axis] + size[axis] * static_cast<float>(k) / static_cast<float>(bins);
+      const double length = static_cast<double>(size[axis]) * k / bins;
+      const double rest = static_cast<double>(size[axis]) - length;
+      const double cost = step + (ends + sides * length) * costOfLeaf(settings_.cost, left) +
+                          (ends + sides * rest) * costOfLeaf(settings_.cost, right);
+      if (!(cost < least)) continue;
+      const float at = box.low[axis] + static_cast<float>(length);
       if (!(at > box.low[axis] && at < box.high[axis])) continue;
-      low.high[axis] = high.low[axis] = at;
-      const double cost = step + (halfArea(low) * costOfLeaf(settings_.cost, left) +
-                                  halfArea(high) * costOfLeaf(settings_.cost, right)) /
-                                     area;
-      if (cost < least) {
-        least = cost;
-        best = {axis, at};
-      }
+      least = cost;
+      best = {axis, at};
     }
   }
   return best;
 }
 
 Box Builder::fitted(std::span<const std::uint32_t> members, const Box& box) const {
-  const auto positive = std::count_if(members.begin(), members.end(),
-                                      [&](std::uint32_t i) { return balls_[i].coefficient > 0; });
+  const auto positive =
+      std::count_if(members.begin(), members.end(), [&](std::uint32_t i) { return balls_[i].positive; });
   const float share = settings_.tight ? shares_.of(static_cast<std::size_t>(positive)) : 1;
   Box around;
   if (!(share > 0)) return around;  // they never add up to the level
   for (const std::uint32_t i : members) {
-    const Metaball& ball = balls_[i];
-    if (settings_.tight && !(ball.coefficient > 0)) continue;
+    const Place& ball = balls_[i];
+    if (settings_.tight && !ball.positive) continue;
     const float reach = ball.support * share;
     around.add({ball.center - reach, ball.center + reach});
   }
@@ -217,7 +261,7 @@ void Builder::discard(Arena& arena, Cell& cell) const {
   const auto begin = arena.begin() + static_cast<std::ptrdiff_t>(cell.from);
   // Those that may have an n-th of the level somewhere in the cell come first.
   const auto others = std::stable_partition(begin, arena.end(), [&](std::uint32_t i) {
-    return balls_[i].coefficient > 0 && reachesInto(balls_[i].center, balls_[i].support * share, wide);
+    return balls_[i].positive && reachesInto(balls_[i].center, balls_[i].support * share, wide);
   });
   const auto end = std::remove_if(others, arena.end(), [&](std::uint32_t i) {
     return std::none_of(begin, others, [&](std::uint32_t j) {
@@ -238,7 +282,7 @@ Builder::Cell Builder::prepare(Arena& arena, const Cell& whole, const Box& box, 
   arena.resize(cell.from + whole.count);
   auto out = arena.begin() + static_cast<std::ptrdiff_t>(cell.from);
   for (std::size_t k = whole.from; k < whole.from + whole.count; ++k) {
-    const Metaball& ball = balls_[arena[k]];
+    const Place& ball = balls_[arena[k]];
     *out = arena[k];
     out += ball.center[axis] + ball.support > low && ball.center[axis] - ball.support < high ? 1 : 0;
   }
@@ -261,8 +305,8 @@ void Builder::makeLeaf(Tree& tree, std::uint32_t at, const Arena& arena, const C
   node.box = cell.box.empty() ? Box{} : cell.box.grown(slack_ / 2);
   node.first = static_cast<std::uint32_t>(tree.members.size());
   node.count = node.own = static_cast<std::uint32_t>(cell.count);
-  const auto from = arena.begin() + static_cast<std::ptrdiff_t>(cell.from);
-  tree.members.insert(tree.members.end(), from, from + static_cast<std::ptrdiff_t>(cell.count));
+  for (std::size_t k = cell.from; k < cell.from + cell.count; ++k)
+    tree.members.push_back(balls_[arena[k]].ball);
 }
 
 // Whether two parts, as they have turned out, are cheaper than the whole.
@@ -277,7 +321,8 @@ void Builder::build(Tree& tree, std::uint32_t at, Arena& arena, Cell cell, int d
   const std::size_t top = arena.size();
   while (true) {
     const std::span<const std::uint32_t> members(arena.data() + cell.from, cell.count);
-    const Cut cut = cell.count > 1 ? bestCut(members, cell.box) : Cut{};
+    const bool few = costOfLeaf(settings_.cost, cell.count) <= costOfStep(settings_.cost);
+    const Cut cut = few ? Cut{} : bestCut(members, cell.box);
     Cell left, right;
     const std::size_t before = arena.size();
     bool worthwhile = cut.axis >= 0;
