@@ -43,6 +43,9 @@ struct SurfaceStats {
   void add(const SurfaceStats& other);
 };
 
+/// To those of the same method, if there are any.
+void addStats(std::vector<SurfaceStats>& all, const SurfaceStats& some);
+
 struct RenderStats {
   std::vector<PassStats> passes;
   std::vector<OmissionStats> omissions;

@@ -631,10 +631,12 @@ void Renderer::forgetStats() {
   impl_->stats = {};
   std::vector<SurfaceStats> forgotten;
   impl_->surfaces.takeStats(forgotten);
+  impl_->tracedLight.takeStats(forgotten);
 }
 
 RenderStats Renderer::stats() const {
   impl_->surfaces.takeStats(impl_->stats.surfaces);
+  impl_->tracedLight.takeStats(impl_->stats.surfaces);
   RenderStats stats = impl_->stats;
   stats.programs = impl_->shaders.compiled();
   stats.compileMs = impl_->shaders.compileMs();

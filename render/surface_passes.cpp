@@ -29,6 +29,16 @@ void SurfaceStats::add(const SurfaceStats& other) {
   }
 }
 
+void addStats(std::vector<SurfaceStats>& all, const SurfaceStats& some) {
+  const auto same = [&](const SurfaceStats& s) { return s.method == some.method; };
+  const auto found = std::find_if(all.begin(), all.end(), same);
+  if (found == all.end()) {
+    all.push_back(some);
+  } else {
+    found->add(some);
+  }
+}
+
 void SurfacePasses::prepare(std::shared_ptr<const Primitives> primitives, const SurfaceSettings& settings) {
   if (primitives->surfaces.empty()) return;
   if (!methods_.empty() && settings_ == settings) return;
@@ -73,16 +83,7 @@ SurfaceLayerRefs SurfacePasses::addLayers(FrameGraph& graph, ShaderLibrary& shad
 }
 
 void SurfacePasses::takeStats(std::vector<SurfaceStats>& stats) {
-  for (const auto& method : methods_) {
-    const SurfaceStats taken = method->takeStats();
-    const auto same = [&](const SurfaceStats& s) { return s.method == taken.method; };
-    const auto found = std::find_if(stats.begin(), stats.end(), same);
-    if (found == stats.end()) {
-      stats.push_back(taken);
-    } else {
-      found->add(taken);
-    }
-  }
+  for (const auto& method : methods_) addStats(stats, method->takeStats());
 }
 
 std::vector<ResourceStats> SurfacePasses::buffers() const {

@@ -9,6 +9,22 @@ void TracedLight::setPrimitives(std::shared_ptr<const Primitives> primitives) {
   scene_.reset();
 }
 
+void TracedLight::takeStats(std::vector<SurfaceStats>& stats) {
+  const bvh::TraceCounts counts = std::exchange(counts_, {});
+  if (counts.rays == 0) return;
+  SurfaceStats some;
+  some.method = "traced rays";
+  some.pixels = counts.rays;
+  some.pieces = counts.effort.pieces;
+  some.iterations = counts.effort.iterations;
+  some.grazing = counts.effort.grazing;
+  some.notConverged = counts.effort.notConverged;
+  some.details = {{"nodes met", static_cast<double>(counts.nodes)},
+                  {"cells searched", static_cast<double>(counts.leaves)},
+                  {"balls in them", static_cast<double>(counts.balls)}};
+  addStats(stats, some);
+}
+
 void TracedLight::add(FrameGraph& graph, const View& view, const Tile& tile, glm::vec2 sampleShift,
                       LightRefs& light) {
   using gl::TextureFormat;

@@ -27,8 +27,8 @@ class TracedLight {
   void add(FrameGraph& graph, const View& view, const Tile& tile, glm::vec2 sampleShift, LightRefs& light);
   bool shadows() const { return settings_.trace.shadows > 0; }
   bool occlusion() const { return settings_.trace.occlusion > 0; }
-  /// Rays since the last call.
-  bvh::TraceCounts takeCounts() { return std::exchange(counts_, {}); }
+  /// Rays since the last call, if there were any, as "traced rays".
+  void takeStats(std::vector<SurfaceStats>& stats);
 
  private:
   std::shared_ptr<const Primitives> primitives_;

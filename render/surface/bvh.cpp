@@ -283,10 +283,10 @@ SurfaceStats Bvh::takeStats() {
                    {"cells searched", leaves + static_cast<double>(answered_.leaves)},
                    {"balls in them", balls + static_cast<double>(answered_.balls)},
                    {"cast by the processor", static_cast<double>(answered_.rays)},
-                   {"nodes", static_cast<double>(tree_.nodes.size())},
-                   {"balls in all cells", static_cast<double>(tree_.members.size())},
-                   {"cells cut short", static_cast<double>(tree_.forcedLeaves)},
-                   {"construction ms", buildMs_}};
+                   {"most nodes", static_cast<double>(tree_.nodes.size())},
+                   {"most balls in all cells", static_cast<double>(tree_.members.size())},
+                   {"most cells cut short", static_cast<double>(tree_.forcedLeaves)},
+                   {"most ms of construction", buildMs_}};
   answered_ = {};
   return stats;
 }

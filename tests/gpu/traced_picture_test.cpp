@@ -126,6 +126,10 @@ TEST_F(TracedPicture, TracedPassesReplaceMaps) {
   std::vector<std::string> passes;
   for (const PassStats& pass : renderer.stats().passes) passes.push_back(pass.name);
   EXPECT_EQ(passes, (std::vector<std::string>{"surface", "trace", "shade"}));
+  const SurfaceStats rays = renderer.stats().surfaces.back();
+  EXPECT_EQ(rays.method, "traced rays");
+  EXPECT_GT(rays.pixels, 32u * 24u);
+  EXPECT_EQ(rays.notConverged, 0u);
 }
 
 }  // namespace
