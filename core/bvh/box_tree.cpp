@@ -47,7 +47,7 @@ void countNodes(Tree& tree) {
 
 namespace {
 
-constexpr int kBins = 16;
+constexpr int kBoxBins = 16;
 
 struct Bin {
   Box box;
@@ -63,9 +63,9 @@ struct Split {
   int bin = 0;    // the first on the right
 };
 
-class Builder {
+class BoxTreeBuilder {
  public:
-  Builder(std::span<const Box> boxes, LeafCost cost) : boxes_(boxes), cost_(cost) {}
+  BoxTreeBuilder(std::span<const Box> boxes, LeafCost cost) : boxes_(boxes), cost_(cost) {}
 
   Tree run(std::span<std::uint32_t> order) {
     Tree tree;
@@ -75,14 +75,14 @@ class Builder {
   }
 
  private:
-  // Of the members' middles, along one axis, in kBins.
+  // Of the members' middles, along one axis, in kBoxBins.
   struct Bins {
     float from, scale;
-    int of(float at) const { return std::clamp(static_cast<int>((at - from) * scale), 0, kBins - 1); }
+    int of(float at) const { return std::clamp(static_cast<int>((at - from) * scale), 0, kBoxBins - 1); }
   };
   static Bins binsOf(const Box& middles, int axis) {
     const float size = middles.high[axis] - middles.low[axis];
-    return {middles.low[axis], size > 0 ? static_cast<float>(kBins) / size : 0};
+    return {middles.low[axis], size > 0 ? static_cast<float>(kBoxBins) / size : 0};
   }
 
   void build(Tree& tree, std::uint32_t at, std::span<std::uint32_t> order, int depth);
@@ -98,10 +98,11 @@ class Builder {
   LeafCost cost_;
 };
 
-Split Builder::bestSplit(std::span<const std::uint32_t> order, const Box& box, const Box& middles) const {
+Split BoxTreeBuilder::bestSplit(std::span<const std::uint32_t> order, const Box& box,
+                                const Box& middles) const {
   std::array<Bins, 3> bins{};
   for (int axis = 0; axis < 3; ++axis) bins[static_cast<std::size_t>(axis)] = binsOf(middles, axis);
-  std::array<std::array<Bin, kBins>, 3> filled{};
+  std::array<std::array<Bin, kBoxBins>, 3> filled{};
   for (const std::uint32_t i : order) {
     const glm::vec3 middle = middleOf(boxes_[i]);
     for (int axis = 0; axis < 3; ++axis) {
@@ -116,15 +117,15 @@ Split Builder::bestSplit(std::span<const std::uint32_t> order, const Box& box, c
   double least = costOfLeaf(cost_, order.size());
   for (int axis = 0; axis < 3; ++axis) {
     const auto& line = filled[static_cast<std::size_t>(axis)];
-    std::array<double, kBins> left{};
+    std::array<double, kBoxBins> left{};
     Bin sum;
-    for (std::size_t k = 1; k < kBins; ++k) {
+    for (std::size_t k = 1; k < kBoxBins; ++k) {
       sum.box.add(line[k - 1].box);
       sum.count += line[k - 1].count;
       left[k] = sum.count > 0 ? halfArea(sum.box) * costOfLeaf(cost_, sum.count) : -1;
     }
     sum = {};
-    for (std::size_t k = kBins - 1; k > 0; --k) {
+    for (std::size_t k = kBoxBins - 1; k > 0; --k) {
       sum.box.add(line[k].box);
       sum.count += line[k].count;
       if (sum.count == 0 || left[k] < 0) continue;
@@ -139,7 +140,7 @@ Split Builder::bestSplit(std::span<const std::uint32_t> order, const Box& box, c
   return best;
 }
 
-void Builder::build(Tree& tree, std::uint32_t at, std::span<std::uint32_t> order, int depth) {
+void BoxTreeBuilder::build(Tree& tree, std::uint32_t at, std::span<std::uint32_t> order, int depth) {
   Box box, middles;
   for (const std::uint32_t i : order) {
     box.add(boxes_[i]);
@@ -181,7 +182,7 @@ Tree buildBoxTree(std::span<const Box> boxes, LeafCost cost) {
   if (boxes.empty()) return {};
   std::vector<std::uint32_t> order(boxes.size());
   std::iota(order.begin(), order.end(), 0u);
-  Tree tree = Builder(boxes, cost).run(order);
+  Tree tree = BoxTreeBuilder(boxes, cost).run(order);
   countNodes(tree);
   return tree;
 }

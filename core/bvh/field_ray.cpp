@@ -143,9 +143,9 @@ std::optional<double> firstRoot(P p, double from, double size, double width, int
 }
 
 template <class K>
-class Search {
+class RootSearch {
  public:
-  Search(const K& kernel, double level, const Stretch& stretch, RayScratch& scratch, RayEffort& effort)
+  RootSearch(const K& kernel, double level, const Stretch& stretch, RayScratch& scratch, RayEffort& effort)
       : kernel_(kernel), level_(level), stretch_(stretch), scratch_(scratch), effort_(effort) {}
 
   double crossing();
@@ -173,7 +173,7 @@ class Search {
 };
 
 template <class K>
-double Search<K>::widthAt(double from, double to) const {
+double RootSearch<K>::widthAt(double from, double to) const {
   double inverse2 = 0;
   for (const std::uint32_t i : scratch_.active) inverse2 = std::max(inverse2, scratch_.chords[i].inverse2);
   return std::max(kWidth / std::sqrt(inverse2), 0x1p-50 * std::max(std::abs(from), std::abs(to)));
@@ -181,7 +181,7 @@ double Search<K>::widthAt(double from, double to) const {
 
 // From each ball's largest and smallest share.
 template <class K>
-bool Search<K>::keepsSign(double from, double to) const {
+bool RootSearch<K>::keepsSign(double from, double to) const {
   double low = -level_, high = -level_, size = level_;
   for (const std::uint32_t i : scratch_.active) {
     const RayChord& c = scratch_.chords[i];
@@ -200,7 +200,7 @@ bool Search<K>::keepsSign(double from, double to) const {
 }
 
 template <class K>
-std::optional<double> Search<K>::examine(double from, double to) {
+std::optional<double> RootSearch<K>::examine(double from, double to) {
   if (armed_ && keepsSign(from, to)) return std::nullopt;
   ++effort_.pieces;
   const double size = to - from, width = widthAt(from, to);
@@ -234,7 +234,7 @@ std::optional<double> Search<K>::examine(double from, double to) {
 }
 
 template <class K>
-double Search<K>::crossing() {
+double RootSearch<K>::crossing() {
   auto& events = scratch_.events;
   events.clear();
   for (std::uint32_t i = 0; i < scratch_.chords.size(); ++i) {
@@ -282,7 +282,7 @@ double Search<K>::crossing() {
 }
 
 template <class K>
-double Search<K>::projection() {
+double RootSearch<K>::projection() {
   auto& places = scratch_.places;
   places.clear();
   for (const RayChord& c : scratch_.chords) {
@@ -331,13 +331,13 @@ double withKernel(const Kernel& kernel, const F& call) {
 double firstCrossing(const Kernel& kernel, double level, const Stretch& stretch, RayScratch& scratch,
                      RayEffort& effort) {
   return withKernel(kernel,
-                    [&](const auto& k) { return Search(k, level, stretch, scratch, effort).crossing(); });
+                    [&](const auto& k) { return RootSearch(k, level, stretch, scratch, effort).crossing(); });
 }
 
 double firstProjection(const Kernel& kernel, double level, const Stretch& stretch, RayScratch& scratch,
                        RayEffort& effort) {
-  return withKernel(kernel,
-                    [&](const auto& k) { return Search(k, level, stretch, scratch, effort).projection(); });
+  return withKernel(
+      kernel, [&](const auto& k) { return RootSearch(k, level, stretch, scratch, effort).projection(); });
 }
 
 double fieldOfChords(const Kernel& kernel, double level, double at, const RayScratch& scratch) {

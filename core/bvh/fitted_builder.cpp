@@ -105,9 +105,9 @@ struct Counts {
   }
 };
 
-class Builder {
+class FittedBuilder {
  public:
-  Builder(const MetaballField& field, const TreeSettings& settings, float slack)
+  FittedBuilder(const MetaballField& field, const TreeSettings& settings, float slack)
       : settings_(settings), slack_(slack), shares_(field) {
     for (const Metaball& ball : field.balls)
       box_.add({ball.center - ball.support, ball.center + ball.support});
@@ -161,8 +161,8 @@ class Builder {
   Shares shares_;
 };
 
-Counts Builder::countIn(std::span<const std::uint32_t> members, const Box& box, const glm::vec3& scale,
-                        int bins) const {
+Counts FittedBuilder::countIn(std::span<const std::uint32_t> members, const Box& box, const glm::vec3& scale,
+                              int bins) const {
   Counts counts;
   const glm::vec3 last(static_cast<float>(bins) - 0.5f);
   for (const std::uint32_t i : members) {
@@ -180,7 +180,7 @@ Counts Builder::countIn(std::span<const std::uint32_t> members, const Box& box, 
   return counts;
 }
 
-Cut Builder::bestCut(std::span<const std::uint32_t> members, const Box& box) const {
+Cut FittedBuilder::bestCut(std::span<const std::uint32_t> members, const Box& box) const {
   const int bins = members.size() < kFewMembers ? kFewBins : kMostBins;
   const glm::vec3 size = box.high - box.low;
   glm::vec3 scale(0);
@@ -229,7 +229,7 @@ Cut Builder::bestCut(std::span<const std::uint32_t> members, const Box& box) con
   return best;
 }
 
-Box Builder::fitted(std::span<const std::uint32_t> members, const Box& box) const {
+Box FittedBuilder::fitted(std::span<const std::uint32_t> members, const Box& box) const {
   const auto positive =
       std::count_if(members.begin(), members.end(), [&](std::uint32_t i) { return balls_[i].positive; });
   const float share = settings_.tight ? shares_.of(static_cast<std::size_t>(positive)) : 1;
@@ -245,7 +245,7 @@ Box Builder::fitted(std::span<const std::uint32_t> members, const Box& box) cons
 }
 
 // Those that reach into the cell.
-void Builder::keep(Arena& arena, Cell& cell) const {
+void FittedBuilder::keep(Arena& arena, Cell& cell) const {
   const Box wide = cell.box.grown(slack_);
   const auto from = arena.begin() + static_cast<std::ptrdiff_t>(cell.from);
   const auto end = std::remove_if(from, arena.end(), [&](std::uint32_t i) {
@@ -255,7 +255,7 @@ void Builder::keep(Arena& arena, Cell& cell) const {
   cell.count = arena.size() - cell.from;
 }
 
-void Builder::discard(Arena& arena, Cell& cell) const {
+void FittedBuilder::discard(Arena& arena, Cell& cell) const {
   const Box wide = cell.box.grown(slack_);
   const float share = shares_.of(cell.count);
   const auto begin = arena.begin() + static_cast<std::ptrdiff_t>(cell.from);
@@ -276,7 +276,7 @@ void Builder::discard(Arena& arena, Cell& cell) const {
 }
 
 // `box` is a part of a cell, cut off along an axis; its members go to the arena's end.
-Builder::Cell Builder::prepare(Arena& arena, const Cell& whole, const Box& box, int axis) const {
+FittedBuilder::Cell FittedBuilder::prepare(Arena& arena, const Cell& whole, const Box& box, int axis) const {
   Cell cell{box, arena.size(), 0, 0};
   const float low = box.low[axis] - slack_, high = box.high[axis] + slack_;
   arena.resize(cell.from + whole.count);
@@ -300,7 +300,7 @@ Builder::Cell Builder::prepare(Arena& arena, const Cell& whole, const Box& box, 
   return cell;
 }
 
-void Builder::makeLeaf(Tree& tree, std::uint32_t at, const Arena& arena, const Cell& cell) const {
+void FittedBuilder::makeLeaf(Tree& tree, std::uint32_t at, const Arena& arena, const Cell& cell) const {
   Node& node = tree.nodes[at];
   node.box = cell.box.empty() ? Box{} : cell.box.grown(slack_ / 2);
   node.first = static_cast<std::uint32_t>(tree.members.size());
@@ -310,14 +310,14 @@ void Builder::makeLeaf(Tree& tree, std::uint32_t at, const Arena& arena, const C
 }
 
 // Whether two parts, as they have turned out, are cheaper than the whole.
-bool Builder::pays(const Cell& cell, const Cell& left, const Cell& right) const {
+bool FittedBuilder::pays(const Cell& cell, const Cell& left, const Cell& right) const {
   const auto share = [&](const Cell& part) {
     return halfArea(part.box) * costOfLeaf(settings_.cost, part.count) / std::max(halfArea(cell.box), 1e-300);
   };
   return costOfStep(settings_.cost) + share(left) + share(right) < costOfLeaf(settings_.cost, cell.count);
 }
 
-void Builder::build(Tree& tree, std::uint32_t at, Arena& arena, Cell cell, int depth) {
+void FittedBuilder::build(Tree& tree, std::uint32_t at, Arena& arena, Cell cell, int depth) {
   const std::size_t top = arena.size();
   while (true) {
     const std::span<const std::uint32_t> members(arena.data() + cell.from, cell.count);
@@ -375,7 +375,7 @@ void Builder::build(Tree& tree, std::uint32_t at, Arena& arena, Cell cell, int d
 
 Tree buildFitted(const MetaballField& field, const TreeSettings& settings, float slack) {
   if (field.balls.empty()) return {};
-  Tree tree = Builder(field, settings, slack).run();
+  Tree tree = FittedBuilder(field, settings, slack).run();
   countNodes(tree);
   return tree;
 }

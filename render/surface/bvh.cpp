@@ -21,12 +21,13 @@
 #include "render/surface/peel_regions.h"
 #include "render/surface/projected_field.h"
 #include "render/surface/ray_counts.h"
+#include "render/two_floats.h"
 
 namespace meniscus {
 
 namespace {
 
-constexpr SurfaceParameter kParameters[] = {
+constexpr SurfaceParameter kBvhParameters[] = {
     {"search", "0: the first root, isolated for certain; 1: the paper's search between projected centres", 0,
      0, 1, true},
     {"tolerance", "width to which a root is narrowed down, as a share of the smallest support around", 1e-5,
@@ -38,10 +39,10 @@ constexpr SurfaceParameter kParameters[] = {
 };
 
 // Textures for so many pixels at once.
-constexpr std::int64_t kRegionPixels = std::int64_t{8} << 20;
+constexpr std::int64_t kMostPixels = std::int64_t{8} << 20;
 
-// As in shaders/include/ball_ray.glsl and bvh.glsl.
-constexpr int kNodesPerRow = 1024, kMembersPerRow = 4096;
+// As in shaders/include/bvh.glsl.
+constexpr int kMembersPerRow = 4096;
 constexpr std::uint32_t kHit = 1, kInsideOut = 2, kUnanswered = 4;
 
 // Loops of software drivers end after 65,535 turns (shaders/include/loops.glsl), and what the surface is
@@ -141,7 +142,7 @@ void Bvh::uploadTree() {
   texels.reserve(tree_.nodes.size());
   for (const bvh::Node& node : tree_.nodes)
     texels.push_back({node.box.low, node.first, node.box.high, node.count});
-  nodes_ = rowsOf(gl::TextureFormat::rgba32ui, texels, kNodesPerRow, 2);
+  nodes_ = rowsOf(gl::TextureFormat::rgba32ui, texels, kBallsPerRow, 2);
   std::vector<std::uint32_t> members = tree_.members;
   members_ = rowsOf(gl::TextureFormat::r32ui, members, kMembersPerRow, 1);
 }
@@ -162,7 +163,7 @@ void Bvh::draw(const PassContext& context, ShaderLibrary& shaders, const Surface
   ballTexture_.upload(balls.data(), balls.size());
   balls_.reserve(balls.size() * sizeof(ProjectedBall));
   balls_.write(balls.data(), balls.size() * sizeof(ProjectedBall));
-  for (const ScreenRect& region : splitRect({0, 0, target.tile.width, target.tile.height}, kRegionPixels))
+  for (const ScreenRect& region : splitRect({0, 0, target.tile.width, target.tile.height}, kMostPixels))
     drawRegion(context, shaders, target, projected, region);
   context.bindTarget();
 }
@@ -251,10 +252,8 @@ void Bvh::answer(const gl::Texture& hits, const SurfaceTarget& target, const Pro
         const double stretch = perspective ? 1 / -rays.toView(ray.direction).z : 1;
         const double toPlane = perspective ? target.view.distance - plane : target.view.nearZ - plane;
         const double place = hit.distance - toPlane * stretch;
-        const auto hi = static_cast<float>(place);
-        const auto lo = static_cast<float>(place - static_cast<double>(hi));
-        texel = {hit.leaf, std::bit_cast<std::uint32_t>(hi), std::bit_cast<std::uint32_t>(lo),
-                 kHit | (hit.fromInside ? kInsideOut : 0u)};
+        texel = {hit.leaf, std::bit_cast<std::uint32_t>(high(place)),
+                 std::bit_cast<std::uint32_t>(low(place)), kHit | (hit.fromInside ? kInsideOut : 0u)};
       }
     }
   });
@@ -301,7 +300,7 @@ std::vector<ResourceStats> Bvh::buffers() const {
 }  // namespace
 
 std::span<const SurfaceParameter> bvhParameters() {
-  return kParameters;
+  return kBvhParameters;
 }
 
 std::unique_ptr<SurfaceMethod> makeBvh(const SurfaceParameters& values) {
