@@ -147,7 +147,10 @@ void RenderRun::checkBeforeReading() const {
   std::vector<std::pair<const char*, std::string>> selections{{"--select", options_.structure.select},
                                                               {"--focus", options_.focus}};
   for (const ShownApart& shown : options_.shown) selections.emplace_back("--show", shown.cid);
+  for (const std::string& cid : options_.hidden) selections.emplace_back("--hide", cid);
   for (const auto& [cid, text] : options_.labels) selections.emplace_back("--label", cid);
+  for (const auto& cids : options_.measures)
+    for (const std::string& cid : cids) selections.emplace_back("--measure", cid);
   for (const auto& [option, cid] : selections) {
     try {
       if (!cid.empty()) selectAtoms(Molecule{}, cid);

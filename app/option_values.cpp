@@ -106,6 +106,20 @@ glm::dvec3 parseAngles(std::string_view option, std::string_view value) {
   return {n[0], n[1], n[2]};
 }
 
+glm::dvec3 parsePoint(std::string_view option, std::string_view value) {
+  const std::vector<double> n = numberList(value, 3);
+  if (n.empty()) throwBadValue(option, value, "three coordinates in Angstrom, for example 10,20.5,-3");
+  return {n[0], n[1], n[2]};
+}
+
+glm::dvec3 parseDirection(std::string_view option, std::string_view value) {
+  const std::vector<double> n = numberList(value, 3);
+  const glm::dvec3 direction = n.empty() ? glm::dvec3(0.0) : glm::dvec3(n[0], n[1], n[2]);
+  if (!(glm::length(direction) > 1e-6 && glm::length(direction) < 1e6))
+    throwBadValue(option, value, "three numbers that are not all zero, for example 0.45,-0.6,-0.8");
+  return direction;
+}
+
 ImageSize parseSize(std::string_view option, std::string_view value) {
   const std::vector<std::string_view> sides = split(value, "xX");
   const std::optional<long long> width = numberFrom<long long>(sides.front());
@@ -292,6 +306,16 @@ ShownApart parseShown(std::string_view option, std::string_view value) {
       std::string(value.substr(0, equals)), parseRepresentation(option, how.substr(0, colon)), {}};
   if (colon != std::string_view::npos) shown.coloring = parseColoring(option, how.substr(colon + 1));
   return shown;
+}
+
+std::vector<std::string> parseMeasure(std::string_view option, std::string_view value) {
+  std::vector<std::string> cids;
+  for (const std::string_view cid : split(value, ";")) cids.emplace_back(cid);
+  const bool empty =
+      std::any_of(cids.begin(), cids.end(), [](const std::string& cid) { return cid.empty(); });
+  if (empty || cids.size() < 2 || cids.size() > 4)
+    throwBadValue(option, value, "two, three or four selections, for example '//A/10/CA;//A/20/CA'");
+  return cids;
 }
 
 void parseAltloc(std::string_view option, std::string_view value, StructureOptions& options) {

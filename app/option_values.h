@@ -34,6 +34,9 @@ double parseNumber(std::string_view option, std::string_view value, double least
                    std::string_view unit = {});
 int parseInteger(std::string_view option, std::string_view value, int least, int most);
 glm::dvec3 parseAngles(std::string_view option, std::string_view value);
+glm::dvec3 parsePoint(std::string_view option, std::string_view value);
+/// Not zero.
+glm::dvec3 parseDirection(std::string_view option, std::string_view value);
 
 /// "WxH", or "N" for a square; each side 1..65535, at most 2^31 - 1 pixels.
 ImageSize parseSize(std::string_view option, std::string_view value);
@@ -81,6 +84,9 @@ ShownApart parseShown(std::string_view option, std::string_view value);
 
 /// CID=TEXT: what to label, and how.
 std::pair<std::string, std::string> parseLabel(std::string_view option, std::string_view value);
+
+/// Two to four CIDs separated by semicolons.
+std::vector<std::string> parseMeasure(std::string_view option, std::string_view value);
 
 /// "first", "all" or a letter or digit.
 void parseAltloc(std::string_view option, std::string_view value, StructureOptions& options);

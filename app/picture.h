@@ -32,6 +32,7 @@ struct Preparation {
   std::vector<Picture> pictures;
   std::vector<std::string> notes;        ///< oddities that were mended
   std::vector<std::string> unsupported;  ///< what of a scene is not drawn: place and reason
+  int modelCount = 1;                    ///< how many models a structure file has
   double parseSeconds = 0, bondsSeconds = 0;
 };
 

@@ -91,6 +91,7 @@ Lighting lightFor(const RenderOptions& options) {
   const bool occlusion = options.occlusion.on || options.trace.occlusion > 0;
   Lighting light = occlusion ? ambientLighting() : Lighting{};
   light.key.intensity = options.keyLight.value_or(light.key.intensity);
+  light.key.direction = options.keyDirection.value_or(light.key.direction);
   light.fill.intensity = options.fillLight.value_or(light.fill.intensity);
   light.ambient = options.ambientLight.value_or(light.ambient);
   light.specular = options.highlight.value_or(light.specular);
@@ -173,6 +174,18 @@ PictureReport PictureDrawer::render(Picture& picture, RowSink& sink, const Pixel
                        progress_.update(share);
                      });
   return report;
+}
+
+HitImage PictureDrawer::hits(const Picture& picture) {
+  MENISCUS_CHECK(picture.primitives != nullptr && picture.primitives == shown_);
+  const View view = makeView(picture.scene.camera, picture.options.size, shown_->bounds());
+  return renderer().renderHits(view, {false, false, true}, picture.options.surface, picture.options.quadrics);
+}
+
+RenderStats PictureDrawer::takeStats() {
+  RenderStats stats = renderer().stats();
+  renderer().forgetStats();
+  return stats;
 }
 
 std::shared_ptr<const Primitives> PictureDrawer::primitivesOf(const Picture& picture) {

@@ -26,6 +26,10 @@ class PictureDrawer {
   void draw(Picture picture);
   /// The same, but the picture's rows to `sink` as 8-bit sRGB; progress says `label`.
   void drawTo(Picture picture, RowSink& sink, const std::string& label);
+  /// What the rays through the pixels' centres meet of a picture that drawTo() has drawn last.
+  HitImage hits(const Picture& picture);
+  /// What was done since this was asked last.
+  RenderStats takeStats();
   /// What the picture's scene becomes, for several pictures of it.
   std::shared_ptr<const Primitives> primitivesOf(const Picture& picture);
   /// Fills in what the report knows of the context and the renderer.

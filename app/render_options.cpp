@@ -36,17 +36,6 @@ constexpr std::array<std::string_view, 20> kNotForThePicture{
     "help",     "scene",  "strict",     "save-scene", "offline", "cache",    "jobs",
     "manifest", "resume", "time-limit", "turntable",  "fps",     "export"};
 
-std::string shellQuoted(const std::string& text) {
-  const auto plain = [](char c) {
-    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
-           std::string_view("_-+=.,:/@%").find(c) != std::string_view::npos;
-  };
-  if (!text.empty() && std::all_of(text.begin(), text.end(), plain)) return text;
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? "'\\''" : std::string(1, c);
-  return quoted + "'";
-}
-
 /// Adds the options of a group to a parser; each hands its text to a function of its own.
 class OptionGroup {
  public:
@@ -132,6 +121,10 @@ void addLabelOptions(CLI::App& app, RenderOptions& o) {
                "Write a text at the middle of these atoms (as --select);\n"
                "may be repeated",
                [&o](auto& n, auto& v) { o.labels.push_back(parseLabel(n, v)); });
+  group.values("--measure", "CID;CID...",
+               "Draw the distance between two groups of atoms, the angle of\n"
+               "three or the torsion of four; may be repeated",
+               [&o](auto& n, auto& v) { o.measures.push_back(parseMeasure(n, v)); });
   group.value("--label-size", "P", "Height of letters, percent of the picture's height [4]",
               [&o](auto& n, auto& v) { o.labelSize = parseNumber(n, v, 0.1, 100, "percent"); });
   group.value("--label-color,--label-colour", "COLOR", "black, white or '#RRGGBB' [black]",
@@ -155,6 +148,8 @@ void addLookOptions(CLI::App& app, RenderOptions& o) {
                "Draw these atoms (as --select) in a way and colours of\n"
                "their own, as in '(HEM)=licorice:element'; may be repeated",
                [&o](auto& n, auto& v) { o.shown.push_back(parseShown(n, v)); });
+  group.values("--hide", "CID", "Leave these atoms out of the picture; may be repeated",
+               [&o](auto&, auto& v) { o.hidden.push_back(v); });
   group.value("--color,--colour", "SCHEME",
               "element (Jmol), chain, residue (chemical kind), bfactor,\n"
               "plddt (AlphaFold's 90/70/50), rainbow (along each chain)\nor one colour '#RRGGBB' [element]",
@@ -255,6 +250,9 @@ void addLightOptions(CLI::App& app, RenderOptions& o) {
   light("--fill-light", "Light from the right [0.16]", o.fillLight);
   light("--ambient-light", "Light from all around [0.12; more with --occlusion]", o.ambientLight);
   light("--highlight", "Strength of highlights [0.16]", o.highlight);
+  group.value("--light-direction", "X,Y,Z",
+              "The way the key light travels: right, up and towards you in\nthe picture [0.45,-0.6,-0.8]",
+              [&o](auto& n, auto& v) { o.keyDirection = parseDirection(n, v); });
   group.value("--shadows", "off|hard|soft", "Shadows of the key light [off]", [&o](auto& n, auto& v) {
     o.shadows.mode = parseChoice<ShadowMode>(
         n, v, {{"off", ShadowMode::off}, {"hard", ShadowMode::hard}, {"soft", ShadowMode::soft}});
@@ -369,6 +367,12 @@ void addCameraOptions(CLI::App& app, RenderOptions& o) {
               [&o](auto&, auto& v) { o.focus = v; });
   group.value("--fov", "DEGREES", "Vertical field of view, 1 to 170 [30]",
               [&o](auto& n, auto& v) { o.fovYDeg = parseNumber(n, v, 1, 170, "degrees"); });
+  group.value("--target", "X,Y,Z", "Point in the middle of the picture, Angstrom [fitted]",
+              [&o](auto& n, auto& v) { o.target = parsePoint(n, v); });
+  group.value("--distance", "D", "From the eye to that point, Angstrom [fitted]",
+              [&o](auto& n, auto& v) { o.distance = parseNumber(n, v, 1e-3, 1e9, "Angstrom"); });
+  group.value("--near", "D", "Cut off what is nearer to the eye than that, Angstrom [nothing]",
+              [&o](auto& n, auto& v) { o.nearest = parseNumber(n, v, 0, 1e9, "Angstrom"); });
   group.flag("--orthographic", "Parallel instead of perspective projection", o.orthographic);
 }
 
@@ -458,12 +462,14 @@ void addOtherOptions(CLI::App& app, RenderOptions& o) {
   group.flag("-q,--quiet", "No progress and no notes, only errors", o.quiet);
 }
 
-// With a scene, what is drawn and from where is the scene's business.
+// With a scene, what is drawn is the scene's business; from where, unless the command says it.
 void requireOnlyPictureOptions(const RenderOptions& o) {
+  constexpr std::array<std::string_view, 4> kCamera{"orient", "target", "distance", "near"};
   if (!o.exportMesh.empty())
     throw UsageError("--export: is for structure files; of a --scene there are only pictures");
   for (const auto& [name, value] : o.given)
-    if (!findSetting(SettingPlace::picture, name))
+    if (!findSetting(SettingPlace::picture, name) &&
+        std::find(kCamera.begin(), kCamera.end(), name) == kCamera.end())
       throw UsageError(
           fmt::format("--{}: is for structure files; with --scene, the scene says it (docs/scene.md)", name));
 }
@@ -486,6 +492,8 @@ void requireConsistent(const CLI::App& app, RenderOptions& o) {
   if (!o.saveScene.empty() && !o.scenes.empty())
     throw UsageError(
         "--save-scene: writes what structure files and options mean; a scene is written already");
+  if (!o.saveScene.empty() && !o.measures.empty())
+    throw UsageError("--measure: a saved scene has no place for it; leave it or --save-scene out");
   requireFilmNames(o, OutputPattern(o.output));
   if (o.resume && o.manifest.empty())
     throw UsageError("--resume: needs the --manifest of the run that is to be continued");
@@ -550,6 +558,17 @@ void addAllOptions(CLI::App& app, RenderOptions& options) {
 }
 
 }  // namespace
+
+std::string shellQuoted(const std::string& text) {
+  const auto plain = [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+           std::string_view("_-+=.,:/@%").find(c) != std::string_view::npos;
+  };
+  if (!text.empty() && std::all_of(text.begin(), text.end(), plain)) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+  return quoted + "'";
+}
 
 void requireSettingsConsistent(const RenderOptions& o) {
   if (!(o.fog.start < o.fog.end))

@@ -37,9 +37,11 @@ struct RenderOptions {
   std::string exportMesh;             ///< pattern of names; empty = no mesh is written
   std::optional<double> meshSpacing;  ///< [Å] nothing = the method's default
   std::vector<ShownApart> shown;      ///< drawn in another way; of several that name an atom the last has it
+  std::vector<std::string> hidden;    ///< CIDs of what is not drawn, whatever else names it
 
   std::vector<std::pair<std::string, std::string>> labels;  ///< CID and text
-  double labelSize = 4;  ///< height of letters, percent of the picture's height
+  std::vector<std::vector<std::string>> measures;  ///< two to four CIDs each: distance, angle, torsion
+  double labelSize = 4;                            ///< height of letters, percent of the picture's height
   LabelColors labelColors;
   std::filesystem::path labelFont;  ///< empty = DejaVu Sans
 
@@ -48,12 +50,15 @@ struct RenderOptions {
   bool orthographic = false;
   double fovYDeg = 30;
   double zoom = 1;
-  std::string focus;  ///< CID; empty = everything
+  std::string focus;                 ///< CID; empty = everything
+  std::optional<glm::dvec3> target;  ///< world point in the middle of the picture [Å]; nothing = fitted
+  std::optional<double> distance, nearest;  ///< as in Camera [Å]; nothing = fitted, and as near as the eye
 
   ImageSize size;
   int samples = 16;
   Background background;
   std::optional<double> keyLight, fillLight, ambientLight, highlight;  ///< nothing = the default
+  std::optional<glm::dvec3> keyDirection;  ///< the way the key light travels, view space
   ShadowSettings shadows;
   OcclusionSettings occlusion;
   TraceSettings trace;
@@ -89,6 +94,9 @@ struct RenderOptions {
   /// The same by name (without "--") and value; a flag's value is empty.
   std::vector<std::pair<std::string, std::string>> given;
 };
+
+/// A word of a command line, quoted for a shell if it must be.
+std::string shellQuoted(const std::string& text);
 
 /// Nothing if --help was asked for (it has been printed). Throws UsageError.
 std::optional<RenderOptions> parseRenderOptions(const std::vector<std::string>& arguments);

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "app/film.h"
+#include "app/measurement.h"
 #include "app/output_name.h"
 #include "app/run_report.h"
 #include "app/scene/mvs_camera.h"
@@ -39,8 +40,9 @@ class StructurePictures {
   SceneObject placedObject(std::shared_ptr<const Molecule> molecule) const;
   Objects objectsFor(const std::shared_ptr<const Molecule>& molecule) const;
   Camera cameraFor(const std::vector<Objects>& models) const;
-  void addLabels(const SceneObject& object, std::vector<Label>& labels) const;
+  void addLabels(const SceneObject& object, Scene& scene) const;
   void addPicture(Scene scene, int model);
+  [[noreturn]] void throwMatchesNothing(const char* option, const std::string& cid) const;
 
   const std::string& file_;
   const RenderOptions& options_;
@@ -59,7 +61,7 @@ Preparation StructurePictures::make(std::string bytes) {
 
   const OutputPattern pattern(options_.output.empty() ? options_.exportMesh : options_.output);
   if (!pattern.namesModel() && !isFilm(options_.output)) {
-    for (const Objects& objects : models) addLabels(objects.front(), scene.labels);
+    for (const Objects& objects : models) addLabels(objects.front(), scene);
     for (Objects& objects : models)
       std::move(objects.begin(), objects.end(), std::back_inserter(scene.objects));
     addPicture(std::move(scene), molecules.front()->model);
@@ -76,7 +78,8 @@ Preparation StructurePictures::make(std::string bytes) {
   for (Objects& objects : models) {
     const int model = objects.front().molecule->model;
     scene.labels.clear();
-    addLabels(objects.front(), scene.labels);
+    scene.dashes.clear();
+    addLabels(objects.front(), scene);
     scene.objects = std::move(objects);
     addPicture(scene, model);
   }
@@ -108,6 +111,7 @@ Molecules StructurePictures::readMolecules(std::string bytes) {
     structure = readStructureBytes(std::move(bytes), file_, options_.structure, logger);
   }
   format_ = structure.format;
+  made_.modelCount = structure.modelCount;
   Molecules molecules;
   for (Molecule& molecule : structure.models) {
     if (drawsBonds()) {
@@ -157,37 +161,56 @@ bool StructurePictures::drawsBonds() const {
                      [&](const ShownApart& shown) { return needsBonds(shown.representation); });
 }
 
-// The molecule in its representation, but for the atoms that --show draws in one of their own.
+// The molecule in its representation, but for the atoms that --show draws in one of their own, and without
+// those that --hide names.
 Objects StructurePictures::objectsFor(const std::shared_ptr<const Molecule>& molecule) const {
   const SceneObject whole = placedObject(molecule);
-  if (options_.shown.empty()) return {whole};
+  if (options_.shown.empty() && options_.hidden.empty()) return {whole};
+  const std::size_t hidden = options_.shown.size() + 1;
   std::vector<std::size_t> owner(molecule->atomCount(), 0);
-  for (std::size_t i = 0; i < options_.shown.size(); ++i) {
-    const std::vector<std::uint32_t> atoms = selectAtoms(*molecule, options_.shown[i].cid);
-    if (atoms.empty())
-      throw InputError(
-          fmt::format("'{}': --show '{}' matches none of the atoms that are drawn; see meniscus info", file_,
-                      options_.shown[i].cid));
-    for (const std::uint32_t atom : atoms) owner[atom] = i + 1;
-  }
-  Objects objects(options_.shown.size() + 1, whole);
+  const auto give = [&](const char* option, const std::string& cid, std::size_t to) {
+    const std::vector<std::uint32_t> atoms = selectAtoms(*molecule, cid);
+    if (atoms.empty()) throwMatchesNothing(option, cid);
+    for (const std::uint32_t atom : atoms) owner[atom] = to;
+  };
+  for (std::size_t i = 0; i < options_.shown.size(); ++i) give("--show", options_.shown[i].cid, i + 1);
+  for (const std::string& cid : options_.hidden) give("--hide", cid, hidden);
+  Objects objects(hidden, whole);
   for (std::size_t i = 0; i < options_.shown.size(); ++i) {
     objects[i + 1].representation = options_.shown[i].representation;
     if (options_.shown[i].coloring) objects[i + 1].coloring = *options_.shown[i].coloring;
   }
-  for (std::uint32_t atom = 0; atom < owner.size(); ++atom) objects[owner[atom]].atoms.push_back(atom);
+  for (std::uint32_t atom = 0; atom < owner.size(); ++atom)
+    if (owner[atom] != hidden) objects[owner[atom]].atoms.push_back(atom);
   std::erase_if(objects, [](const SceneObject& object) { return object.atoms.empty(); });
+  if (objects.empty()) throw InputError(fmt::format("'{}': --hide leaves nothing to draw; hide less", file_));
   return objects;
 }
 
-void StructurePictures::addLabels(const SceneObject& object, std::vector<Label>& labels) const {
-  for (const auto& [cid, text] : options_.labels) {
-    const std::vector<std::uint32_t> atoms = selectAtoms(*object.molecule, cid);
-    if (atoms.empty())
-      throw InputError(fmt::format(
-          "'{}': --label '{}' matches none of the atoms that are drawn; see meniscus info", file_, cid));
-    labels.push_back(labelOf(object.molecule, object.placements, atoms, text));
+void StructurePictures::addLabels(const SceneObject& object, Scene& scene) const {
+  const auto chosen = [&](const char* option, const std::string& cid) {
+    std::vector<std::uint32_t> atoms = selectAtoms(*object.molecule, cid);
+    if (atoms.empty()) throwMatchesNothing(option, cid);
+    return atoms;
+  };
+  for (const auto& [cid, text] : options_.labels)
+    scene.labels.push_back(labelOf(object.molecule, object.placements, chosen("--label", cid), text));
+  for (const std::vector<std::string>& measured : options_.measures) {
+    std::vector<glm::dvec3> points;
+    for (const std::string& cid : measured) {
+      const std::vector<std::uint32_t> atoms = chosen("--measure", cid);
+      glm::dvec3 sum(0.0);
+      for (const std::uint32_t atom : atoms) sum += object.molecule->positions[atom];
+      const glm::dvec3 middle = sum / static_cast<double>(atoms.size());
+      points.emplace_back(object.placements.front().transform * glm::dvec4(middle, 1.0));
+    }
+    addMeasure(points, options_.labelColors.text, scene);
   }
+}
+
+void StructurePictures::throwMatchesNothing(const char* option, const std::string& cid) const {
+  throw InputError(fmt::format("'{}': {} '{}' matches none of the atoms that are drawn; see meniscus info",
+                               file_, option, cid));
 }
 
 // One camera for all models of a file, so that they can be compared and make a film; it looks as suits the
@@ -235,7 +258,11 @@ Camera StructurePictures::cameraFor(const std::vector<Objects>& models) const {
       break;
   }
   camera.orientation = rotatedBy(camera.orientation, options_.rotationDeg);
-  return fitted(camera, options_.size, spheres);
+  camera = fitted(camera, options_.size, spheres);
+  if (options_.target) camera.target = *options_.target;
+  if (options_.distance) camera.distance = *options_.distance;
+  camera.nearest = options_.nearest;
+  return camera;
 }
 
 }  // namespace

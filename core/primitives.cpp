@@ -1,6 +1,7 @@
 #include "core/primitives.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
 
@@ -170,6 +171,22 @@ MetaballField emptyField(const SurfaceShape& shape) {
   return field;
 }
 
+// Dashes of a dashed line and the gaps between them [Å].
+constexpr double kDash = 0.3, kGap = 0.2;
+
+void addDashes(const DashedLine& line, std::uint32_t id, Primitives& out) {
+  const double length = glm::length(line.to - line.from);
+  const glm::dvec3 step = length > 0 ? (line.to - line.from) / length : glm::dvec3(0.0);
+  const auto count = static_cast<std::size_t>(std::ceil(length / (kDash + kGap)));
+  for (std::size_t i = 0; i < count; ++i) {
+    const double from = static_cast<double>(i) * (kDash + kGap);
+    const glm::vec3 a(line.from + from * step - out.origin);
+    const glm::vec3 b(line.from + std::min(from + kDash, length) * step - out.origin);
+    if (a != b)
+      out.cylinders.push_back({a, static_cast<float>(line.radius), b, line.color, line.color, id, id});
+  }
+}
+
 // Adds the groups of all ids of one placement.
 void addGroups(const Molecule& molecule, LineGroups groups, std::uint32_t& nextGroup,
                std::vector<std::uint32_t>& out) {
@@ -183,12 +200,28 @@ void addGroups(const Molecule& molecule, LineGroups groups, std::uint32_t& nextG
 }  // namespace
 
 std::size_t countIds(const Scene& scene) {
-  std::size_t ids = 0;
+  std::size_t ids = scene.dashes.size();
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const SceneObject& object = scene.objects[i];
     if (!sharesIds(scene, i)) ids += object.molecule->atomCount() * object.placements.size();
   }
   return ids;
+}
+
+std::optional<PlacedAtom> atomOfId(const Scene& scene, std::uint32_t id) {
+  std::uint64_t first = 1;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const SceneObject& object = scene.objects[i];
+    if (sharesIds(scene, i)) continue;
+    const std::uint64_t atoms = object.molecule->atomCount();
+    if (id >= first && id < first + atoms * object.placements.size()) {
+      const auto atom = static_cast<std::uint32_t>((id - first) % atoms);
+      const Placement& placement = object.placements[(id - first) / atoms];
+      return PlacedAtom{object.molecule, atom, placed(placement, object.molecule->positions[atom])};
+    }
+    first += atoms * object.placements.size();
+  }
+  return std::nullopt;
 }
 
 bool needsBonds(Representation representation) {
@@ -239,6 +272,10 @@ Primitives buildPrimitives(const Scene& scene, LineGroups groups) {
     }
     nextId = id;
     if (!out.surfaces.empty() && out.surfaces.back().balls.empty()) out.surfaces.pop_back();
+  }
+  for (const DashedLine& line : scene.dashes) {
+    if (grouped) out.groups.push_back(nextGroup++);
+    addDashes(line, nextId++, out);
   }
   return out;
 }

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/camera_fit.h"
@@ -60,12 +62,22 @@ struct Primitives {
 
 /// All objects of a scene; residues or chains get Primitives::groups, which are different in every placement.
 /// Ids number the atoms of the first placement of the first object 1, 2, ..., and go on; an object of the
-/// same molecule and placements as the one before shares its ids. Throws InputError if more than 2^32 - 1 ids
-/// would be needed.
+/// same molecule and placements as the one before shares its ids; dashed lines come last. Throws InputError
+/// if more than 2^32 - 1 ids would be needed.
 Primitives buildPrimitives(const Scene& scene, LineGroups groups = LineGroups::none);
 
 /// How many ids buildPrimitives() gives.
 std::size_t countIds(const Scene& scene);
+
+/// An atom of a scene, in one of its placements.
+struct PlacedAtom {
+  std::shared_ptr<const Molecule> molecule;
+  std::uint32_t atom = 0;
+  glm::dvec3 position{0.0};  ///< world [Å]
+};
+
+/// The atom that buildPrimitives() gives this id; nothing for the background and what is no atom.
+std::optional<PlacedAtom> atomOfId(const Scene& scene, std::uint32_t id);
 
 /// Whether an object's representation draws bonds; if none does, nobody needs to find them.
 bool needsBonds(Representation representation);

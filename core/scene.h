@@ -72,6 +72,13 @@ struct Label {
   double radius = 0;  ///< of the sphere [Å]
 };
 
+/// A dashed line between two points [Å, world], as thick as it is; an id of its own.
+struct DashedLine {
+  glm::dvec3 from{0.0}, to{0.0};
+  Rgb color = 0x000000;
+  double radius = 0.06;
+};
+
 /// Light from infinity, fixed to the viewer.
 struct DirectionalLight {
   glm::dvec3 direction{0, 0, -1};  ///< the way the light travels, view space; need not be unit length
@@ -105,6 +112,7 @@ struct Background {
 struct Scene {
   std::vector<SceneObject> objects;
   std::vector<Label> labels;
+  std::vector<DashedLine> dashes;
   Lighting lighting;
   Background background;
   Camera camera;

@@ -66,7 +66,7 @@ void MvsCamera::readCamera(const MvsNode& node, std::vector<std::string>& unsupp
   reference_ = reference;
   const std::optional<JsonPlace> exact = node.meniscus();
   if (!exact) return;
-  static constexpr std::array<std::string_view, 3> kKeys{"orientation", "target", "distance"};
+  static constexpr std::array<std::string_view, 4> kKeys{"orientation", "target", "distance", "near"};
   settingsOf(*exact, SettingPlace::picture, kKeys);
   Camera camera;
   const std::vector<double> q = exact->at("orientation").numbers(4);
@@ -76,6 +76,7 @@ void MvsCamera::readCamera(const MvsNode& node, std::vector<std::string>& unsupp
   camera.target = exact->at("target").vector();
   camera.distance = exact->at("distance").number();
   if (!(camera.distance > 0)) exact->at("distance").fail("must be positive");
+  if (const auto nearest = exact->find("near")) camera.nearest = nearest->number();
   exact_ = camera;
 }
 
@@ -105,11 +106,24 @@ void MvsCamera::readFocus(const MvsNode& node, const std::vector<FitSphere>& sph
 }
 
 Camera MvsCamera::camera(const RenderOptions& options, const std::vector<FitSphere>& all) const {
+  Camera camera = ownCamera(options, all);
+  if (options.orientation.kind == Orientation::Kind::axis)
+    camera.orientation = lookDownAxis(options.orientation.axis);
+  if (options.orientation.kind == Orientation::Kind::quaternion)
+    camera.orientation = options.orientation.quaternion;
+  if (options.target) camera.target = *options.target;
+  if (options.distance) camera.distance = *options.distance;
+  if (options.nearest) camera.nearest = options.nearest;
+  return camera;
+}
+
+Camera MvsCamera::ownCamera(const RenderOptions& options, const std::vector<FitSphere>& all) const {
   Camera camera = plainCamera(options);
   if (exact_) {
     camera.orientation = exact_->orientation;
     camera.target = exact_->target;
     camera.distance = exact_->distance;
+    camera.nearest = exact_->nearest;
     return camera;
   }
   if (reference_) {

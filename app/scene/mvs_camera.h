@@ -21,10 +21,13 @@ class MvsCamera {
                  std::vector<std::string>& unsupported);
 
   /// The camera for a picture of these options; where nothing is asked for, it looks along -z at `all`. A
-  /// camera node wins over focus nodes, of which several share one picture.
+  /// camera node wins over focus nodes, of which several share one picture; --orient, --target, --distance
+  /// and
+  /// --near of the options have their way over both.
   Camera camera(const RenderOptions& options, const std::vector<FitSphere>& all) const;
 
  private:
+  Camera ownCamera(const RenderOptions& options, const std::vector<FitSphere>& all) const;
   struct Reference {
     glm::dvec3 target, position, up;
     std::optional<double> near;

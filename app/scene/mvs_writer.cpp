@@ -42,10 +42,11 @@ Json cameraNode(const Picture& picture) {
               {"position", listOf(camera.target + axes[2] * reference)},
               {"up", listOf(axes[1])}};
   const glm::dquat& q = camera.orientation;
-  return node("camera", std::move(params),
-              {{"orientation", {q.w, q.x, q.y, q.z}},
-               {"target", listOf(camera.target)},
-               {"distance", camera.distance}});
+  Json exact{{"orientation", {q.w, q.x, q.y, q.z}},
+             {"target", listOf(camera.target)},
+             {"distance", camera.distance}};
+  if (camera.nearest) exact["near"] = *camera.nearest;
+  return node("camera", std::move(params), std::move(exact));
 }
 
 const char* formatName(StructureFormat format) {
@@ -92,6 +93,7 @@ Json componentNodes(const Picture& picture) {
   };
   Json except = Json::array();
   for (const ShownApart& shown : o.shown) except.push_back(shown.cid);
+  for (const std::string& cid : o.hidden) except.push_back(cid);
   add(except.empty() ? Json::object() : Json{{"except", except}},
       representationNode(o.representation, o.coloring, o.given));
   for (const ShownApart& shown : o.shown) {

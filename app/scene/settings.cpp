@@ -31,6 +31,7 @@ constexpr std::array kSettings = std::to_array<Setting>({
     {"fill-light", picture, number},
     {"ambient-light", picture, number},
     {"highlight", picture, number},
+    {"light-direction", picture, text},
     {"shadows", picture, text},
     {"penumbra", picture, number},
     {"shadow-samples", picture, integer},
