@@ -9,6 +9,8 @@ namespace meniscus {
 
 int runRender(const std::vector<std::string>& arguments);
 int runInfo(const std::vector<std::string>& arguments);
+/// Only where there is MENISCUS_VIEWER.
+int runView(const std::vector<std::string>& arguments);
 int runDoctor(const std::vector<std::string>& arguments);
 int runMeasure(const std::vector<std::string>& arguments);
 

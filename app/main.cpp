@@ -23,6 +23,7 @@ constexpr const char* kHelp =
     "\n"
     "Commands:\n"
     "  render FILE... -o OUT.png   Draw structure files as pictures\n"
+    "  view [FILE...]              Show structure files in a window\n"
     "  info FILE                   Say what a structure file holds\n"
     "  measure SWEEP -o DIR        Measure error against run time, and write a report\n"
     "  doctor                      Say which ways to OpenGL work here, and what to do about the others\n"
@@ -39,9 +40,21 @@ constexpr const char* kHelp =
     "\n"
     "Exit codes: 0 done, 1 a file could not be read, drawn or written, 2 wrong usage, 3 no OpenGL 4.5.\n";
 
+constexpr const char* kCommands = "there are render, view, info, measure and doctor, see meniscus --help";
+
+int runViewIfBuilt(const std::vector<std::string>& arguments) {
+#ifdef MENISCUS_VIEWER
+  return runView(arguments);
+#else
+  static_cast<void>(arguments);
+  throw UsageError(
+      "this meniscus was built without its window (MENISCUS_VIEWER=OFF); 'meniscus render FILE -o "
+      "OUT.png' draws pictures");
+#endif
+}
+
 int runCommand(std::vector<std::string> arguments) {
-  if (arguments.empty())
-    throw UsageError("no command; there are render, info, measure and doctor, see meniscus --help");
+  if (arguments.empty()) throw UsageError(std::string("no command; ") + kCommands);
   std::string command = arguments.front();
   arguments.erase(arguments.begin());
   if (command == "help" && !arguments.empty()) {
@@ -49,6 +62,7 @@ int runCommand(std::vector<std::string> arguments) {
     arguments = {"--help"};
   }
   if (command == "render") return runRender(arguments);
+  if (command == "view") return runViewIfBuilt(arguments);
   if (command == "info") return runInfo(arguments);
   if (command == "measure") return runMeasure(arguments);
   if (command == "doctor") return runDoctor(arguments);
@@ -60,8 +74,7 @@ int runCommand(std::vector<std::string> arguments) {
     std::printf("meniscus %s\n", version());
     return 0;
   }
-  throw UsageError("there is no command '" + command +
-                   "'; there are render, info, measure and doctor, see meniscus --help");
+  throw UsageError("there is no command '" + command + "'; " + kCommands);
 }
 
 extern "C" void endBySignal(int signal) {

@@ -28,3 +28,15 @@ target_include_directories(meniscus_glm SYSTEM INTERFACE ${GLM_INCLUDE_DIR})
 # python3-glad; /usr/bin/python3 because the first python3 on the PATH may not be the one that has Debian's modules.
 find_program(GLAD_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH REQUIRED)
 find_path(EGL_INCLUDE_DIR EGL/egl.h REQUIRED)  # libegl-dev: declarations only, the library is opened at run time
+
+if(MENISCUS_VIEWER)
+  find_package(Threads REQUIRED)
+  find_package(glfw3 REQUIRED)  # libglfw3-dev
+  # libimgui-dev: Dear ImGui with its back ends for GLFW and OpenGL 3
+  find_path(IMGUI_INCLUDE_DIR imgui.h PATH_SUFFIXES imgui REQUIRED)
+  find_library(IMGUI_LIBRARY imgui REQUIRED)
+  find_library(STB_LIBRARY stb REQUIRED)  # Debian's Dear ImGui takes its font rasterizer from there
+  add_library(meniscus_imgui INTERFACE)
+  target_include_directories(meniscus_imgui SYSTEM INTERFACE ${IMGUI_INCLUDE_DIR})
+  target_link_libraries(meniscus_imgui INTERFACE ${IMGUI_LIBRARY} ${STB_LIBRARY} glfw Freetype::Freetype ${CMAKE_DL_LIBS})
+endif()

@@ -1,0 +1,101 @@
+#include "app/view/moving_quality.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/scene.h"
+
+namespace meniscus {
+namespace {
+
+// Effects return before the picture is sharper than this, and go before it is coarser than that.
+constexpr double kSharpEnough = 0.5, kTooCoarse = 0.34;
+// A frame that takes less than this share of the budget leaves room for an effect.
+constexpr double kRoomForEffect = 0.5;
+
+struct Cut {
+  const char* name;
+  bool (*applies)(const RenderOptions&);
+  void (*apply)(RenderOptions&);
+};
+
+// The dearest first (docs/measured/effects_cost.md).
+constexpr Cut kCuts[] = {
+    {"ambient occlusion", [](const RenderOptions& o) { return o.occlusion.on; },
+     [](RenderOptions& o) {
+       // Without it the light would change, too.
+       const Lighting light = ambientLighting();
+       o.keyLight = o.keyLight.value_or(light.key.intensity);
+       o.fillLight = o.fillLight.value_or(light.fill.intensity);
+       o.ambientLight = o.ambientLight.value_or(light.ambient);
+       o.occlusion.on = false;
+     }},
+    {"soft edges of shadows", [](const RenderOptions& o) { return o.shadows.mode == ShadowMode::soft; },
+     [](RenderOptions& o) { o.shadows.mode = ShadowMode::hard; }},
+    {"depth unsharp masking", [](const RenderOptions& o) { return o.depthUnsharp.mode != UnsharpMode::off; },
+     [](RenderOptions& o) { o.depthUnsharp.mode = UnsharpMode::off; }},
+    {"shadows", [](const RenderOptions& o) { return o.shadows.mode != ShadowMode::off; },
+     [](RenderOptions& o) { o.shadows.mode = ShadowMode::off; }},
+    {"outlines", [](const RenderOptions& o) { return o.lines.any(); },
+     [](RenderOptions& o) {
+       o.lines.silhouettes = o.lines.creases = false;
+       o.lines.groups = LineGroups::none;
+     }}};
+
+}  // namespace
+
+std::vector<std::string> possibleCuts(const RenderOptions& options) {
+  std::vector<std::string> names;
+  for (const Cut& cut : kCuts)
+    if (cut.applies(options)) names.emplace_back(cut.name);
+  return names;
+}
+
+RenderOptions reduced(RenderOptions options, const MovingQuality& quality) {
+  const auto side = [&](int pixels) {
+    return std::max(1, static_cast<int>(std::lround(pixels * quality.scale)));
+  };
+  options.size = {side(options.size.width), side(options.size.height)};
+  options.samples = 1;
+  options.shadows.samples = std::min(options.shadows.samples, 16);
+  options.occlusion.directions = 8;
+  options.lines.width = std::max(0.5, options.lines.width * quality.scale);
+  int left = quality.cuts;
+  for (const Cut& cut : kCuts) {
+    if (left == 0) break;
+    if (!cut.applies(options)) continue;
+    cut.apply(options);
+    --left;
+  }
+  return options;
+}
+
+void QualityGovernor::reset(int possibleCuts) {
+  quality_ = {kSharpEnough, possibleCuts};
+  tooSlow_.assign(static_cast<std::size_t>(possibleCuts) + 1, false);
+}
+
+void QualityGovernor::measured(double milliseconds) {
+  const double share = std::max(milliseconds, 1e-3) / kBudgetMs;
+  double& scale = quality_.scale;
+  const auto cuts = static_cast<std::size_t>(quality_.cuts);
+  if (share > 1) {
+    scale /= std::sqrt(std::min(share, 4.0));
+    if (scale < kTooCoarse && cuts + 1 < tooSlow_.size()) {
+      tooSlow_[cuts] = true;
+      ++quality_.cuts;
+      scale = kTooCoarse;
+    }
+    scale = std::max(scale, kLeastScale);
+    return;
+  }
+  if (share < kRoomForEffect && scale >= kSharpEnough && cuts > 0 && !tooSlow_[cuts - 1]) {
+    --quality_.cuts;
+    return;
+  }
+  // Time grows with the pixels at most: no step goes beyond the budget, if the next frame costs as this one.
+  if (share < 0.8) scale = std::min(1.0, scale * std::min(1.2, std::sqrt(0.9 / share)));
+}
+
+}  // namespace meniscus

@@ -1,0 +1,40 @@
+#pragma once
+// How much of a picture is drawn while it moves, so that a frame takes no longer than its budget: fewer
+// pixels, one ray for each, and then the dearest effects left out, one after the other. Chosen by the time
+// that frames take, which is why none of it needs to know the machine.
+
+#include <string>
+#include <vector>
+
+#include "app/render_options.h"
+
+namespace meniscus {
+
+struct MovingQuality {
+  double scale = 0.5;  ///< of the picture's sides
+  int cuts = 0;        ///< how many of the effects are left out
+};
+
+/// What can be left out of a picture of these options, the dearest first, in words.
+std::vector<std::string> possibleCuts(const RenderOptions& options);
+
+/// The options of a frame of a moving picture: one ray per pixel, of `quality`.
+RenderOptions reduced(RenderOptions options, const MovingQuality& quality);
+
+class QualityGovernor {
+ public:
+  static constexpr double kBudgetMs = 35;  ///< of a frame; what is left of 50 ms is the window's
+  static constexpr double kLeastScale = 0.15;
+
+  /// Begins anew with the least of everything, for a scene or settings whose cost is not known.
+  void reset(int possibleCuts);
+  const MovingQuality& quality() const { return quality_; }
+  /// A frame of quality() took so long.
+  void measured(double milliseconds);
+
+ private:
+  MovingQuality quality_;
+  std::vector<bool> tooSlow_;  // by number of cuts: known to take longer than the budget
+};
+
+}  // namespace meniscus

@@ -1,0 +1,343 @@
+#include "app/view/picture_worker.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <new>
+#include <utility>
+
+#include "app/picture_drawer.h"
+#include "app/scene/mvs_scene.h"
+#include "app/scene/settings.h"
+#include "app/structure_pictures.h"
+#include "app/view/moving_quality.h"
+#include "core/error.h"
+#include "io/file_bytes.h"
+
+namespace meniscus {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Thrown by a picture that is no longer wanted.
+struct Superseded {};
+
+class BufferSink : public RowSink {
+ public:
+  explicit BufferSink(std::vector<std::byte>& bytes) : bytes_(bytes) {}
+  void writeRows(std::span<const std::byte> rows) override {
+    bytes_.insert(bytes_.end(), rows.begin(), rows.end());
+  }
+
+ private:
+  std::vector<std::byte>& bytes_;
+};
+
+// Options about the picture that decide what there is to draw or from where, too.
+constexpr std::array<std::string_view, 7> kSceneToo{"background", "style",       "fov",     "orthographic",
+                                                    "zoom",       "label-color", "outlines"};
+
+// What the scene of a structure is made from; other options only say how it is drawn.
+GivenOptions sceneOptions(GivenOptions given) {
+  std::erase_if(given, [](const auto& option) {
+    return option.first == "size" ||
+           (findSetting(SettingPlace::picture, option.first) &&
+            std::find(kSceneToo.begin(), kSceneToo.end(), option.first) == kSceneToo.end());
+  });
+  return given;
+}
+
+Preparation preparePictures(const RenderOptions& options, const std::string& bytes) {
+  if (options.scenes.empty()) return structurePictures(options.files.front(), bytes, options);
+  MvsFile file(options.scenes.front(), {options.offline, options.cache});
+  return scenePictures(options.scenes.front(), file, options);
+}
+
+RenderOptions optionsFrom(const std::vector<std::string>& arguments) {
+  std::optional<RenderOptions> options = parseRenderOptions(arguments);
+  if (!options) throw UsageError("--help: has no meaning in a window");
+  return std::move(*options);
+}
+
+RenderOptions timed(RenderOptions options) {
+  options.explain = true;
+  return options;
+}
+
+}  // namespace
+
+// What the thread holds: all of it is made, used and destroyed there.
+class PictureWorker::Drawing {
+ public:
+  explicit Drawing(PictureWorker& worker) : worker_(worker), options_(timed(worker.base_)) { renew(); }
+
+  void serve(const ViewRequest& request);
+  void save(const std::vector<std::string>& arguments);
+  /// After OpenGL failed: begins anew with the next picture.
+  void renew() {
+    drawer_.reset();
+    drawer_ = std::make_unique<PictureDrawer>(options_, report_, progress_);
+    drawer_->watch = [this] {
+      if (interruptible_ && worker_.superseded(number_)) throw Superseded{};
+    };
+  }
+
+ private:
+  void prepare(const ViewRequest& request);
+  const std::string& bytesOf(const RenderOptions& options, bool reread);
+  ViewFrame draw(const ViewRequest& request, RenderOptions options, FrameStage stage);
+  void drawStill(const ViewRequest& request);
+  Picture live(RenderOptions options) const;
+
+  PictureWorker& worker_;
+  const RenderOptions options_;
+  RunReport report_;
+  Progress progress_{false};
+  std::unique_ptr<PictureDrawer> drawer_;
+  std::uint64_t number_ = 0;
+  bool interruptible_ = false;
+
+  std::string file_, bytes_;            // a structure file as it was read
+  std::vector<std::string> arguments_;  // of preparation_
+  GivenOptions sceneOptions_;
+  ImageSize size_;
+  std::uint64_t document_ = 0;
+  std::shared_ptr<Preparation> preparation_;
+  std::vector<std::shared_ptr<const Primitives>> primitives_;  // of its pictures, once they are wanted
+  std::size_t shown_ = 0;
+  Camera camera_;
+  QualityGovernor governor_;
+};
+
+const std::string& PictureWorker::Drawing::bytesOf(const RenderOptions& options, bool reread) {
+  const std::string file = options.scenes.empty() ? options.files.front() : "";
+  if (reread || file != file_) {
+    bytes_ = file.empty() ? "" : readBytes(file);
+    file_ = file;
+  }
+  return bytes_;
+}
+
+// Reads and builds again only what the options that changed are about.
+void PictureWorker::Drawing::prepare(const ViewRequest& request) {
+  if (preparation_ && request.arguments == arguments_ && request.document == document_ && !request.reread)
+    return;
+  RenderOptions options = optionsFrom(request.arguments);
+  GivenOptions sceneOptionsNow = sceneOptions(options.given);
+  const bool sizeMatters = options.size != size_ && !request.camera;
+  const bool sameScene = preparation_ && request.document == document_ && options.scenes.empty() &&
+                         !request.reread && !sizeMatters && sceneOptionsNow == sceneOptions_;
+  const int cuts = static_cast<int>(possibleCuts(options).size());
+  if (sameScene) {
+    for (Picture& picture : preparation_->pictures) picture.options = options;
+  } else {
+    auto made = std::make_shared<Preparation>(preparePictures(options, bytesOf(options, request.reread)));
+    primitives_.assign(made->pictures.size(), nullptr);
+    preparation_ = std::move(made);
+    document_ = request.document;
+    sceneOptions_ = std::move(sceneOptionsNow);
+    worker_.publish([&](ViewUpdates& updates) {
+      updates.preparation = preparation_;
+      updates.document = document_;
+    });
+  }
+  size_ = options.size;
+  arguments_ = request.arguments;
+  governor_.reset(cuts);
+}
+
+// Without what only files need.
+Picture PictureWorker::Drawing::live(RenderOptions options) const {
+  const Picture& whole = preparation_->pictures[shown_];
+  Picture picture;
+  picture.input = whole.input;
+  picture.options = std::move(options);
+  picture.scene.labels = whole.scene.labels;
+  picture.scene.background = whole.scene.background;
+  picture.scene.camera = camera_;
+  picture.primitives = primitives_[shown_];
+  return picture;
+}
+
+ViewFrame PictureWorker::Drawing::draw(const ViewRequest& request, RenderOptions options, FrameStage stage) {
+  ViewFrame frame;
+  frame.request = request;
+  frame.stage = stage;
+  frame.size = options.size;
+  frame.samples = options.samples;
+  frame.camera = camera_;
+  frame.pictureSize = preparation_->pictures[shown_].options.size;
+  frame.bounds = primitives_[shown_]->bounds();
+  frame.pixels.reserve(std::size_t{4} * static_cast<std::size_t>(options.size.width) *
+                       static_cast<std::size_t>(options.size.height));
+  BufferSink sink(frame.pixels);
+  const Clock::time_point start = Clock::now();
+  drawer_->drawTo(live(std::move(options)), sink, "");
+  frame.milliseconds = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+  frame.stats = drawer_->takeStats();
+  report_ = {};
+  return frame;
+}
+
+void PictureWorker::Drawing::drawStill(const ViewRequest& request) {
+  const Picture& picture = preparation_->pictures[shown_];
+  RenderOptions options = picture.options;
+  interruptible_ = true;
+  if (options.samples > 1) {
+    options.samples = 1;
+    ViewFrame frame = draw(request, options, FrameStage::first);
+    worker_.publish([&](ViewUpdates& updates) { updates.frame = std::move(frame); });
+  }
+  ViewFrame frame = draw(request, picture.options, FrameStage::full);
+  worker_.publish([&](ViewUpdates& updates) { updates.frame = std::move(frame); });
+  if (worker_.superseded(number_)) return;
+  ViewHits hits{request.number, drawer_->hits(live(picture.options)), preparation_, shown_};
+  drawer_->takeStats();
+  worker_.publish([&](ViewUpdates& updates) { updates.hits = std::move(hits); });
+}
+
+void PictureWorker::Drawing::serve(const ViewRequest& request) {
+  number_ = request.number;
+  interruptible_ = false;
+  prepare(request);
+  shown_ = std::min(request.shown, preparation_->pictures.size() - 1);
+  const Picture& picture = preparation_->pictures[shown_];
+  if (!primitives_[shown_]) primitives_[shown_] = drawer_->primitivesOf(picture);
+  camera_ = picture.scene.camera;
+  if (request.camera) {
+    camera_.orientation = request.camera->orientation;
+    camera_.target = request.camera->target;
+    camera_.distance = request.camera->distance;
+    camera_.nearest = request.camera->nearest;
+  }
+  if (!request.moving) {
+    drawStill(request);
+    return;
+  }
+  const MovingQuality quality = governor_.quality();
+  ViewFrame frame = draw(request, reduced(picture.options, quality), FrameStage::moving);
+  governor_.measured(frame.milliseconds - frame.stats.compileMs);
+  frame.leftOut = possibleCuts(picture.options);
+  frame.leftOut.resize(std::min(frame.leftOut.size(), static_cast<std::size_t>(quality.cuts)));
+  worker_.publish([&](ViewUpdates& updates) { updates.frame = std::move(frame); });
+}
+
+void PictureWorker::Drawing::save(const std::vector<std::string>& arguments) {
+  interruptible_ = false;
+  const RenderOptions options = optionsFrom(arguments);
+  Preparation made = preparePictures(options, bytesOf(options, false));
+  for (Picture& picture : made.pictures) {
+    const std::string name = picture.output;
+    drawer_->draw(std::move(picture));
+    worker_.publish([&](ViewUpdates& updates) { updates.messages.push_back("saved " + name); });
+  }
+  drawer_->takeStats();
+  report_ = {};
+}
+
+PictureWorker::PictureWorker(const RenderOptions& base, std::function<void()> notify)
+    : base_(base), notify_(std::move(notify)), thread_([this] { run(); }) {}
+
+PictureWorker::~PictureWorker() {
+  {
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
+  }
+  wake_.notify_one();
+  thread_.join();
+}
+
+void PictureWorker::show(ViewRequest request) {
+  {
+    const std::lock_guard lock(mutex_);
+    // A still picture that is no longer wanted must not hide that its settings are.
+    request.reread = request.reread || (next_ && next_->reread);
+    next_ = std::move(request);
+  }
+  wake_.notify_one();
+}
+
+void PictureWorker::save(std::vector<std::string> arguments) {
+  {
+    const std::lock_guard lock(mutex_);
+    saves_.push_back(std::move(arguments));
+  }
+  wake_.notify_one();
+}
+
+ViewUpdates PictureWorker::take() {
+  const std::lock_guard lock(mutex_);
+  hasUpdates_ = false;
+  return std::exchange(updates_, {});
+}
+
+bool PictureWorker::idle() const {
+  const std::lock_guard lock(mutex_);
+  return !working_ && !next_ && saves_.empty() && !hasUpdates_;
+}
+
+template <typename Change>
+void PictureWorker::publish(Change change) {
+  {
+    const std::lock_guard lock(mutex_);
+    change(updates_);
+    hasUpdates_ = true;
+  }
+  notify_();
+}
+
+bool PictureWorker::superseded(std::uint64_t number) const {
+  const std::lock_guard lock(mutex_);
+  return stop_ || (next_ && next_->number > number);
+}
+
+void PictureWorker::run() {
+  Drawing drawing(*this);
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    wake_.wait(lock, [this] { return stop_ || next_ || !saves_.empty(); });
+    if (stop_) return;
+    working_ = true;
+    const bool saves = !saves_.empty();
+    std::vector<std::string> arguments;
+    ViewRequest request;
+    if (saves) {
+      arguments = std::move(saves_.front());
+      saves_.erase(saves_.begin());
+    } else {
+      request = std::move(*std::exchange(next_, std::nullopt));
+    }
+    lock.unlock();
+    std::string failure;
+    try {
+      if (saves) {
+        drawing.save(arguments);
+      } else {
+        drawing.serve(request);
+      }
+    } catch (const Superseded&) {
+      // The next request is there already.
+    } catch (const GraphicsError& error) {
+      failure = error.what();
+      drawing.renew();
+    } catch (const std::bad_alloc&) {
+      failure = "not enough memory; draw fewer atoms or make the window smaller";
+    } catch (const std::exception& error) {
+      failure = error.what();
+    }
+    publish([&](ViewUpdates& updates) {
+      working_ = false;
+      if (failure.empty()) return;
+      if (saves) {
+        updates.messages.push_back(failure);
+      } else {
+        updates.failure = {request.number, failure};
+      }
+    });
+    lock.lock();
+  }
+}
+
+}  // namespace meniscus

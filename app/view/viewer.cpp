@@ -1,0 +1,389 @@
+#include "app/view/viewer.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <glm/geometric.hpp>
+#include <nlohmann/json.hpp>
+
+#include "app/measurement.h"
+#include "app/output_name.h"
+#include "app/view/camera_moves.h"
+#include "app/view/overlays.h"
+#include "app/view/panels.h"
+#include "core/camera_fit.h"
+#include "io/structure_reader.h"
+
+namespace meniscus {
+namespace {
+
+// Without a change for so long, a picture stands still and is drawn in full [s].
+constexpr double kStill = 0.12;
+// The window is drawn so often after something happened: widgets answer to what they see one frame later.
+constexpr int kRedraws = 3;
+
+std::string baseName(const std::string& file) {
+  return std::filesystem::path(file).filename().string();
+}
+
+ImageSize windowSizeFor(const RenderOptions& base) {
+  // As wide as a panel more; a screen is seldom higher than that.
+  return {std::min(base.size.width, 1600) + 330, std::min(base.size.height, 1000)};
+}
+
+}  // namespace
+
+Viewer::Viewer(const RenderOptions& base, const std::vector<std::string>& files)
+    : base_(base), window_("Meniscus", windowSizeFor(base)), worker_(base, &Window::wake) {
+  window_.onKey = [this](int key, bool control, bool shift) { handleKey(key, control, shift); };
+  window_.onDrop = [this](const std::vector<std::string>& dropped) {
+    for (const std::string& file : dropped) open(file);
+  };
+  for (const std::string& file : files) open(file, base.given);
+  current_ = 0;
+}
+
+void Viewer::open(const std::string& file, const GivenOptions& given) {
+  documents_.push_back({nextId_++, std::make_unique<Document>(file, given), nullptr});
+  current_ = documents_.size() - 1;
+}
+
+void Viewer::showDocument(std::size_t index) {
+  if (index < documents_.size()) current_ = index;
+  playing = false;
+}
+
+void Viewer::closeDocument(std::size_t index) {
+  documents_.erase(documents_.begin() + static_cast<std::ptrdiff_t>(index));
+  if (current_ >= index && current_ > 0) --current_;
+}
+
+void Viewer::run() {
+  int redraws = kRedraws;
+  while (!window_.closed()) {
+    const double wait = redraws > 0 ? 0 : secondsToWait();
+    window_.wait(wait);
+    if (wait != 0) redraws = kRedraws;
+    takeUpdates();
+    advanceModels();
+    submit();
+    if (window_.minimized()) {
+      redraws = 0;
+      continue;
+    }
+    const bool fresh = frame_ && !frame_->pixels.empty();
+    if (fresh) {
+      texture_.set(frame_->size, frame_->pixels);
+      frame_->pixels = {};
+    }
+    window_.draw([this] { layOut(); });
+    if (fresh) latency_.shown(frame_->request.number, frame_->stage == FrameStage::full);
+    submit();
+    --redraws;
+  }
+}
+
+double Viewer::secondsToWait() const {
+  const auto until = [](Clock::time_point when) {
+    return std::max(1e-3, std::chrono::duration<double>(when - Clock::now()).count());
+  };
+  if (playing) return until(nextModel_);
+  if (asked_.moving)
+    return until(lastChange_ +
+                 std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(kStill)));
+  return -1;
+}
+
+// Asks for a picture if what is to be seen is not what was asked for last.
+void Viewer::submit() {
+  if (documents_.empty() || size_.width < 1 || size_.height < 1) return;
+  const Open& open = documents_[current_];
+  const Document& document = *open.document;
+  const bool same = asked_.number > 0 && asked_.document == open.id &&
+                    askedRevision_ == document.revision() && askedOneByOne_ == document.oneByOne &&
+                    asked_.shown == document.shown && !reread_;
+  ViewRequest request;
+  request.arguments = preparationArguments(document, size_);
+  const auto sameCamera = [](const std::optional<Camera>& a, const std::optional<Camera>& b) {
+    if (!a || !b) return a.has_value() == b.has_value();
+    return a->orientation == b->orientation && a->target == b->target && a->distance == b->distance &&
+           a->nearest == b->nearest;
+  };
+  if (same && request.arguments == asked_.arguments && sameCamera(document.camera, asked_.camera)) {
+    const bool still = Clock::now() - lastChange_ > std::chrono::duration<double>(kStill);
+    if (!(asked_.moving && still && !playing)) return;
+    moving_ = false;
+  } else {
+    lastChange_ = Clock::now();
+  }
+  request.number = asked_.number + 1;
+  request.document = open.id;
+  request.camera = document.camera;
+  request.shown = document.shown;
+  request.moving = moving_ || playing;
+  request.reread = std::exchange(reread_, false);
+  moving_ = false;
+  askedRevision_ = document.revision();
+  askedOneByOne_ = document.oneByOne;
+  latency_.asked(request.number, request.moving);
+  asked_ = request;
+  hits_.reset();
+  hover_.clear();
+  worker_.show(std::move(request));
+}
+
+void Viewer::takeUpdates() {
+  ViewUpdates updates = worker_.take();
+  if (updates.preparation) {
+    for (Open& open : documents_)
+      if (open.id == updates.document) open.made = updates.preparation;
+    if (!updates.preparation->unsupported.empty())
+      say(fmt::format("{} (and {} more that are not drawn)", updates.preparation->unsupported.front(),
+                      updates.preparation->unsupported.size() - 1));
+    updatePicks();
+  }
+  if (updates.frame) {
+    frame_ = std::move(updates.frame);
+    if (Document* shown = document();
+        shown && frame_->request.document == documents_[current_].id && shown->camera) {
+      shown->camera->projection = frame_->camera.projection;
+      shown->camera->fovY = frame_->camera.fovY;
+      shown->camera->zoom = frame_->camera.zoom;
+    }
+    if (frame_->stage == FrameStage::full) {
+      full_ = *frame_;
+      full_->pixels = {};
+    }
+  }
+  if (updates.hits && updates.hits->number == asked_.number) {
+    hits_ = std::move(updates.hits);
+    resolvePick();
+  }
+  for (const std::string& message : updates.messages) say(message, !message.starts_with("saved "));
+  if (updates.failure) takeFailure(updates.failure->first, updates.failure->second);
+}
+
+// A change that cannot be drawn is undone; a file that cannot be read is closed.
+void Viewer::takeFailure(std::uint64_t number, const std::string& message) {
+  say(message, true);
+  if (number != asked_.number || documents_.empty()) return;
+  playing = false;
+  if (documents_[current_].made && documents_[current_].document->undo()) return;
+  if (!documents_[current_].made) closeDocument(current_);
+}
+
+void Viewer::say(const std::string& message, bool isError) {
+  message_ = message;
+  messageIsError_ = isError;
+  messages_.push_back(message);
+}
+
+bool Viewer::finished() const {
+  return hits_ && hits_->number == asked_.number && frame_ && frame_->request.number == asked_.number;
+}
+
+const RenderOptions* Viewer::options() const {
+  const Preparation* made = preparation();
+  return made ? &made->pictures.front().options : nullptr;
+}
+
+const Molecule* Viewer::molecule() const {
+  const Preparation* made = preparation();
+  if (!made) return nullptr;
+  const std::size_t shown = std::min(documents_[current_].document->shown, made->pictures.size() - 1);
+  const auto& objects = made->pictures[shown].scene.objects;
+  return objects.empty() ? nullptr : objects.front().molecule.get();
+}
+
+std::optional<Camera> Viewer::camera() const {
+  if (documents_.empty()) return std::nullopt;
+  if (documents_[current_].document->camera) return documents_[current_].document->camera;
+  if (frame_ && frame_->request.document == documents_[current_].id) return frame_->camera;
+  return std::nullopt;
+}
+
+void Viewer::moveCamera(const Camera& camera) {
+  if (!document()) return;
+  document()->camera = camera;
+  moving_ = true;
+}
+
+void Viewer::resetCamera() {
+  if (document()) document()->camera.reset();
+}
+
+void Viewer::lookAlong(int axis) {
+  std::optional<Camera> now = camera();
+  const Preparation* made = preparation();
+  if (!now || !made) return;
+  std::vector<FitSphere> spheres;
+  const std::size_t shown = std::min(document()->shown, made->pictures.size() - 1);
+  for (const SceneObject& object : made->pictures[shown].scene.objects) {
+    const std::vector<FitSphere> some = fitSpheres(object);
+    spheres.insert(spheres.end(), some.begin(), some.end());
+  }
+  now->orientation = axis < 0 ? principalAxes(spheres, size_.height > size_.width) : lookDownAxis(axis);
+  document()->camera = now;
+}
+
+void Viewer::toggleOrthographic() {
+  if (!document()) return;
+  if (document()->has("orthographic")) {
+    document()->remove("orthographic");
+  } else {
+    document()->set("orthographic", "");
+  }
+}
+
+std::string Viewer::nextName() const {
+  if (documents_.empty()) return "picture.png";
+  const std::string stem = stemOf(documents_[current_].document->file());
+  // The pictures of several states tell themselves apart.
+  const Preparation* made = preparation();
+  const bool states = documents_[current_].document->isScene() && made && made->pictures.size() > 1;
+  for (int i = 1;; ++i) {
+    const std::string number = i == 1 ? "" : fmt::format("-{}", i);
+    if (states) return fmt::format("{}-{{state}}.png", stem);
+    if (!std::filesystem::exists(stem + number + ".png")) return stem + number + ".png";
+  }
+}
+
+std::vector<std::string> Viewer::argumentsFor(const std::string& output) {
+  const Document& shown = *document();
+  std::optional<int> model;
+  if (const Preparation* made = preparation(); made && shown.oneByOne && !shown.isScene())
+    model = made->pictures[std::min(shown.shown, made->pictures.size() - 1)].place.model;
+  return renderArguments(shown, shown.camera, size_, output, model);
+}
+
+void Viewer::copyCommand() {
+  if (!document()) return;
+  window_.copy(commandLine(argumentsFor(nextName())));
+  say("the command is on the clipboard");
+}
+
+void Viewer::copyMeasures() {
+  if (!document()) return;
+  std::string text;
+  std::vector<glm::dvec3> points;
+  for (const Pick& pick : document()->picks) {
+    text += (text.empty() ? "" : " - ") + pick.name;
+    points.push_back(pick.position);
+  }
+  if (points.size() >= 2) text += ": " + measureText(points);
+  if (text.empty()) return;
+  window_.copy(text);
+  say("copied: " + text);
+}
+
+void Viewer::save() {
+  if (!document()) return;
+  const std::string name = nextName();
+  say("saving " + name);
+  worker_.save(argumentsFor(name));
+}
+
+void Viewer::keepMeasure() {
+  if (!document()) return;
+  const std::optional<std::string> option = document()->measureOption();
+  if (!option) {
+    say("click two, three or four atoms first; those of copies are only shown");
+    return;
+  }
+  if (document()->isScene()) {
+    say("a scene file has no place for measures; they are shown as long as their atoms are picked");
+    return;
+  }
+  std::vector<std::string> measures = document()->values("measure");
+  measures.push_back(*option);
+  document()->setAll("measure", measures);
+  document()->picks.clear();
+}
+
+void Viewer::reread() {
+  reread_ = true;
+}
+
+void Viewer::showModel(std::size_t index) {
+  if (!document()) return;
+  document()->shown = index;
+  updatePicks();
+}
+
+// Models and settings move atoms and take some away.
+void Viewer::updatePicks() {
+  const Molecule* shown = molecule();
+  if (!shown) return;
+  const std::size_t index = std::min(document()->shown, preparation()->pictures.size() - 1);
+  const SceneObject& object = preparation()->pictures[index].scene.objects.front();
+  std::erase_if(document()->picks, [&](Pick& pick) {
+    const std::vector<std::uint32_t> atoms =
+        pick.cid.empty() ? std::vector<std::uint32_t>() : selectAtoms(*shown, pick.cid);
+    if (atoms.size() != 1) return true;
+    if (!pick.copy)
+      pick.position = object.placements.front().transform * glm::dvec4(shown->positions[atoms[0]], 1.0);
+    return false;
+  });
+}
+
+void Viewer::advanceModels() {
+  const Preparation* made = preparation();
+  if (!playing || !document() || !made || made->pictures.size() < 2) return;
+  if (Clock::now() < nextModel_ || !frame_ || frame_->request.number != asked_.number) return;
+  nextModel_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                  std::chrono::duration<double>(1 / modelsPerSecond));
+  showModel((document()->shown + 1) % made->pictures.size());
+}
+
+void Viewer::layOut() {
+  const ImageSize window = window_.size();
+  const double left = panelsShown ? std::min<double>(panelWidth(*this), window.width - 1) : 0;
+  area_ = {left, 0, std::max(1.0, window.width - left), std::max<double>(1, window.height)};
+  const double scale = window_.pixelsPerUnit();
+  size_ = {std::max(1, static_cast<int>(std::lround(area_.width * scale))),
+           std::max(1, static_cast<int>(std::lround(area_.height * scale)))};
+  const PicturePlace place{area_.x, area_.y, area_.height, scale};
+
+  ImDrawList* background = ImGui::GetBackgroundDrawList();
+  const auto at = [](double x, double y) { return ImVec2(static_cast<float>(x), static_cast<float>(y)); };
+  const bool shown = frame_ && document() && frame_->request.document == documents_[current_].id;
+  if (shown) {
+    // A picture of another size, until that of this size is there, keeps its height.
+    const double width = area_.height * frame_->pictureSize.width / frame_->pictureSize.height;
+    const double x = area_.x + 0.5 * (area_.width - width);
+    background->PushClipRect(at(area_.x, area_.y), at(area_.x + area_.width, area_.y + area_.height));
+    background->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture_.name())),
+                         at(x, area_.y), at(x + width, area_.y + area_.height));
+    if (const auto now = camera()) drawPicks(document()->picks, *now, size_, place, contentScale());
+    background->PopClipRect();
+  } else if (!document()) {
+    drawInvitation(place);
+  }
+  handleMouse();
+  drawStatus(hover_,
+             !document() || shown || !message_.empty() ? message_ : "reading " + baseName(document()->file()),
+             messageIsError_, place);
+  if (panelsShown) drawPanels(*this, window.height);
+  if (budgetShown) drawBudget(*this, budgetShown);
+  if (helpShown) drawHelp(helpShown);
+  window_.setTitle(document() ? fmt::format("{} - Meniscus{}", baseName(document()->file()),
+                                            finished() ? "" : " (drawing)")
+                              : "Meniscus");
+}
+
+std::string Viewer::statsAsJson() const {
+  const auto json = [](const Latency::Summary& s) {
+    return nlohmann::ordered_json{
+        {"count", s.count}, {"median", s.median}, {"95_percent", s.share95}, {"most", s.most}};
+  };
+  nlohmann::ordered_json stats{{"window", window_.api()},
+                               {"input_to_picture_ms", json(latency_.moving())},
+                               {"still_to_full_ms", json(latency_.full())},
+                               {"messages", messages_}};
+  return stats.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace meniscus

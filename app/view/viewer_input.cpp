@@ -1,0 +1,266 @@
+// What mouse and keyboard do in the viewer (viewer.h).
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/trigonometric.hpp>
+
+#include "app/view/camera_moves.h"
+#include "app/view/viewer.h"
+
+namespace meniscus {
+namespace {
+
+// A click whose mouse moved no farther than this is none [window's units].
+constexpr double kClick = 4;
+// Of the distance, for a step of the wheel.
+constexpr double kDolly = 0.88;
+// Of the scene's diameter, for a step of the wheel.
+constexpr double kClipStep = 0.01;
+// What a double click shows around the atom [Å]: a binding site.
+constexpr double kFocus = 8;
+constexpr double kLightRadPerPixel = 0.006;
+constexpr double kKeyTurnDeg = 10;
+
+glm::dvec2 of(const ImVec2& v) {
+  return {static_cast<double>(v.x), static_cast<double>(v.y)};
+}
+
+}  // namespace
+
+glm::dvec2 Viewer::cursor() const {
+  const glm::dvec2 mouse = of(ImGui::GetIO().MousePos);
+  const double scale = window_.pixelsPerUnit();
+  return {(mouse.x - area_.x) * scale, size_.height - (mouse.y - area_.y) * scale};
+}
+
+std::uint32_t Viewer::idAt(glm::dvec2 pixel) const {
+  if (!hits_ || !(pixel.x >= 0 && pixel.y >= 0)) return 0;
+  const auto x = static_cast<int>(pixel.x), y = static_cast<int>(pixel.y);
+  const ImageSize size = hits_->image.size;
+  if (x >= size.width || y >= size.height) return 0;
+  return hits_->image
+      .id[static_cast<std::size_t>(y) * static_cast<std::size_t>(size.width) + static_cast<std::size_t>(x)];
+}
+
+std::optional<PlacedAtom> Viewer::atomAt(glm::dvec2 pixel) const {
+  const std::uint32_t id = idAt(pixel);
+  if (id == 0) return std::nullopt;
+  return atomOfId(hits_->preparation->pictures[hits_->shown].scene, id);
+}
+
+void Viewer::handleMouse() {
+  const ImGuiIO& io = ImGui::GetIO();
+  const glm::dvec2 now = cursor();
+  const glm::dvec2 before = std::exchange(lastCursor_, now);
+  if (!document()) return;
+  const bool free = !io.WantCaptureMouse;
+  const bool anyDown = io.MouseDown[0] || io.MouseDown[1] || io.MouseDown[2];
+  if (free && io.MouseWheel != 0) handleWheel(static_cast<double>(io.MouseWheel));
+  if (free && io.MouseDoubleClicked[0]) {
+    // The first of the two clicks has picked the atom.
+    if (wantedPick_)
+      wantedPick_.reset();
+    else if (const auto atom = atomAt(now);
+             atom && !document()->picks.empty() && document()->picks.back().position == atom->position)
+      document()->picks.pop_back();
+    wantedPick_ = WantedPick{now, true};
+    pressed_ = false;
+    resolvePick();
+    return;
+  }
+  if (free && anyDown && !dragging_ && !pressed_) {
+    pressed_ = true;
+    pressedAt_ = now;
+  }
+  const double scale = window_.pixelsPerUnit();
+  if (pressed_ && glm::length(now - pressedAt_) > kClick * scale) {
+    dragging_ = true;
+    pressed_ = false;
+  }
+  if (dragging_ && anyDown && now != before) {
+    if (const auto from = camera()) handleDrag(*from, before, now);
+  }
+  if (pressed_ && !anyDown) {
+    wantedPick_ = WantedPick{pressedAt_, false};
+    resolvePick();
+  }
+  if (!anyDown) {
+    if (dragging_) document()->endChange();
+    dragging_ = pressed_ = false;
+  }
+  hover_.clear();
+  if (free && !anyDown && finished())
+    if (const auto atom = atomAt(now)) hover_ = nameOf(*atom->molecule, atom->atom);
+}
+
+void Viewer::handleDrag(Camera from, glm::dvec2 before, glm::dvec2 now) {
+  const ImGuiIO& io = ImGui::GetIO();
+  if (io.MouseDown[0] && io.KeyCtrl) {
+    dragLight(now - before);
+  } else if (io.MouseDown[0] && !io.KeyShift) {
+    moveCamera(turned(from, size_, before, now));
+  } else {
+    moveCamera(panned(from, size_, before, now));
+  }
+}
+
+void Viewer::dragLight(glm::dvec2 by) {
+  const RenderOptions* shown = options();
+  if (!shown) return;
+  glm::dvec3 direction = shown->keyDirection.value_or(Lighting{}.key.direction);
+  if (const auto given = document()->value("light-direction"))
+    direction = parseDirection("--light-direction", *given);
+  const glm::dvec2 angles = by * kLightRadPerPixel / window_.pixelsPerUnit();
+  const glm::dquat turn =
+      glm::angleAxis(angles.x, glm::dvec3(0, 1, 0)) * glm::angleAxis(-angles.y, glm::dvec3(1, 0, 0));
+  direction = glm::normalize(turn * direction);
+  document()->set("light-direction",
+                  fmt::format("{:.3f},{:.3f},{:.3f}", direction.x, direction.y, direction.z), true);
+  moving_ = true;
+}
+
+void Viewer::handleWheel(double steps) {
+  const std::optional<Camera> from = camera();
+  if (!from || !frame_) return;
+  if (ImGui::GetIO().KeyCtrl) {
+    moveCamera(clippedBy(*from, frame_->bounds, kClipStep * steps));
+  } else {
+    moveCamera(dollied(*from, size_, cursor(), std::pow(kDolly, steps)));
+  }
+}
+
+// When the picture is finished: before, nobody knows what was clicked.
+void Viewer::resolvePick() {
+  if (!wantedPick_ || !finished() || !document()) return;
+  const WantedPick wanted = *std::exchange(wantedPick_, std::nullopt);
+  const std::optional<PlacedAtom> atom = atomAt(wanted.pixel);
+  if (!atom) {
+    if (!wanted.focus) document()->picks.clear();
+    return;
+  }
+  if (wanted.focus) {
+    document()->camera = focusedOn(*camera(), size_, {atom->position, kFocus});
+    return;
+  }
+  const Molecule& shown = *atom->molecule;
+  const auto& objects = hits_->preparation->pictures[hits_->shown].scene.objects;
+  const bool first = atom->molecule == objects.front().molecule &&
+                     atom->position == glm::dvec3(objects.front().placements.front().transform *
+                                                  glm::dvec4(shown.positions[atom->atom], 1.0));
+  document()->pick({cidOf(shown, atom->atom), nameOf(shown, atom->atom), atom->position, !first});
+}
+
+void Viewer::handleKey(int key, bool control, bool shift) {
+  const auto turn = [&](double right, double up) {
+    if (const auto now = camera()) {
+      Camera turned = *now;
+      turned.orientation = rotatedBy(turned.orientation, glm::dvec3(-up, right, 0) * kKeyTurnDeg);
+      moveCamera(turned);
+    }
+  };
+  Document* shown = document();
+  if (control) {
+    switch (key) {
+      case GLFW_KEY_Q:
+        window_.close();
+        return;
+      case GLFW_KEY_S:
+        save();
+        return;
+      case GLFW_KEY_C:
+        shift ? copyMeasures() : copyCommand();
+        return;
+      case GLFW_KEY_Z:
+        if (shown && !(shift ? shown->redo() : shown->undo())) say("there is nothing to undo");
+        return;
+      case GLFW_KEY_Y:
+        if (shown && !shown->redo()) say("there is nothing to redo");
+        return;
+      default:
+        return;
+    }
+  }
+  static constexpr std::array<const char*, 8> kRepresentations{
+      "spacefill", "ball_and_stick", "licorice", "cartoon", "surface", "backbone", "putty", "ellipsoids"};
+  if (shown && key >= GLFW_KEY_1 && key <= GLFW_KEY_8) {
+    if (shown->isScene())
+      say("a scene says itself how its atoms are drawn");
+    else
+      shown->set("representation", kRepresentations[static_cast<std::size_t>(key - GLFW_KEY_1)]);
+    return;
+  }
+  switch (key) {
+    case GLFW_KEY_F1:
+    case GLFW_KEY_H:
+      helpShown = !helpShown;
+      return;
+    case GLFW_KEY_TAB:
+      panelsShown = !panelsShown;
+      return;
+    case GLFW_KEY_B:
+      budgetShown = !budgetShown;
+      return;
+    case GLFW_KEY_R:
+      resetCamera();
+      return;
+    case GLFW_KEY_P:
+      lookAlong(-1);
+      return;
+    case GLFW_KEY_X:
+      lookAlong(0);
+      return;
+    case GLFW_KEY_Y:
+      lookAlong(1);
+      return;
+    case GLFW_KEY_Z:
+      lookAlong(2);
+      return;
+    case GLFW_KEY_O:
+      toggleOrthographic();
+      return;
+    case GLFW_KEY_M:
+      keepMeasure();
+      return;
+    case GLFW_KEY_F5:
+      reread();
+      return;
+    case GLFW_KEY_SPACE:
+      playing = !playing && preparation() && preparation()->pictures.size() > 1;
+      return;
+    case GLFW_KEY_LEFT:
+      turn(-1, 0);
+      return;
+    case GLFW_KEY_RIGHT:
+      turn(1, 0);
+      return;
+    case GLFW_KEY_UP:
+      turn(0, 1);
+      return;
+    case GLFW_KEY_DOWN:
+      turn(0, -1);
+      return;
+    case GLFW_KEY_PAGE_DOWN:
+      showDocument(current_ + 1);
+      return;
+    case GLFW_KEY_PAGE_UP:
+      showDocument(current_ - 1);
+      return;
+    case GLFW_KEY_ESCAPE:
+      helpShown = false;
+      message_.clear();
+      if (shown) shown->picks.clear();
+      return;
+    default:
+      return;
+  }
+}
+
+}  // namespace meniscus
