@@ -233,13 +233,14 @@ std::vector<glm::dvec3> occlusionDirections(int count) {
 }
 
 OcclusionMaps drawOcclusionMaps(const Primitives& primitives, const View& camera,
-                                const OcclusionSettings& settings) {
+                                const OcclusionSettings& settings, const std::function<void()>& watch) {
   std::vector<SpherePrimitive> cores = coresOf(primitives.surfaces);
   cores.insert(cores.end(), primitives.filling.begin(), primitives.filling.end());
   OcclusionMaps all = layOut(primitives, cores, camera, settings);
   std::atomic<std::size_t> next = 0;
-  const auto work = [&] {
+  const auto work = [&](bool watched) {
     for (std::size_t i = next++; i < all.maps.size(); i = next++) {
+      if (watched && watch) watch();
       Canvas canvas(all, all.maps[i], primitives.origin);
       for (const SpherePrimitive& s : primitives.spheres) canvas.draw(s);
       for (const CylinderPrimitive& c : primitives.cylinders) canvas.draw(c);
@@ -250,8 +251,13 @@ OcclusionMaps drawOcclusionMaps(const Primitives& primitives, const View& camera
   };
   std::vector<std::jthread> others;
   const unsigned threads = std::min(std::thread::hardware_concurrency(), 64u);
-  for (unsigned i = 1; i < threads; ++i) others.emplace_back(work);
-  work();
+  for (unsigned i = 1; i < threads; ++i) others.emplace_back(work, false);
+  try {
+    work(true);
+  } catch (...) {
+    next = all.maps.size();  // nobody begins another; the others are waited for
+    throw;
+  }
   others.clear();  // waits
   return all;
 }

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "core/primitives.h"
@@ -46,6 +47,6 @@ std::vector<glm::dvec3> occlusionDirections(int count);
 /// as large as the settings say, or as a pixel of the picture, or as memory demands, whichever is most; the
 /// radius is at least that of four texels and of a slab.
 OcclusionMaps drawOcclusionMaps(const Primitives& primitives, const View& camera,
-                                const OcclusionSettings& settings);
+                                const OcclusionSettings& settings, const std::function<void()>& watch = {});
 
 }  // namespace meniscus

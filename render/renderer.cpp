@@ -295,7 +295,7 @@ struct Renderer::Impl {
   }
 
   void drawShadowMap(Frame& frame);
-  void drawOcclusion(Frame& frame);
+  void drawOcclusion(Frame& frame, const std::function<void(double)>& progress);
   void setEffects(Frame& frame);
   void drawTile(const Frame& frame, const Tile& part, const gl::Texture& picture, LayerTexels& texels,
                 const std::function<void(double)>& progress);
@@ -383,7 +383,7 @@ void Renderer::Impl::setEffects(Frame& frame) {
 }
 
 // Counted as a pass, though the processor draws them.
-void Renderer::Impl::drawOcclusion(Frame& frame) {
+void Renderer::Impl::drawOcclusion(Frame& frame, const std::function<void(double)>& progress) {
   double spent = 0;
   {
     Stopwatch watch(spent);
@@ -394,7 +394,9 @@ void Renderer::Impl::drawOcclusion(Frame& frame) {
     }
     // What is translucent occludes nothing.
     const Primitives& occluders = frame.translucent ? *withoutSurfaces : *primitives;
-    occlusionBuffers.set(frame.view, drawOcclusionMaps(occluders, frame.view, frame.settings.occlusion));
+    occlusionBuffers.set(frame.view, drawOcclusionMaps(occluders, frame.view, frame.settings.occlusion, [&] {
+                           if (progress) progress(0);
+                         }));
   }
   auto pass = std::find_if(stats.passes.begin(), stats.passes.end(),
                            [](const PassStats& s) { return s.name == "occlusion maps"; });
@@ -492,7 +494,7 @@ void Renderer::renderPicture(const View& view, const Lighting& lighting, const B
   }
   if (color && trace.occlusion == 0 && settings.occlusion.on && anyOpaque) {
     Stopwatch watch(r.stats.drawMs);
-    r.drawOcclusion(frame);
+    r.drawOcclusion(frame, progress);
   }
 
   const std::size_t pixelBytes = bytesPerPixel(layout);

@@ -53,7 +53,7 @@ class Renderer {
   void setLabels(std::vector<LabelSprite> labels, const LabelColors& colors);
 
   /// Draws a picture of view.size and hands its rows to `sink` from the top. What `layout` leaves out is not
-  /// computed. `progress` gets the finished share 0..1.
+  /// computed. `progress` gets the finished share 0..1; what it throws ends the picture.
   void renderPicture(const View& view, const Lighting& lighting, const Background& background,
                      const RenderSettings& settings, const PixelLayout& layout, RowSink& sink,
                      const std::function<void(double)>& progress = {});

@@ -31,6 +31,12 @@ void Latency::shown(std::uint64_t number, bool full, Clock::time_point when) {
   }
 }
 
+double Latency::recentWindowMs() const {
+  constexpr std::ptrdiff_t kRecent = 9;
+  const auto count = std::min(kRecent, static_cast<std::ptrdiff_t>(windows_.size()));
+  return summaryOf({windows_.end() - count, windows_.end()}).median;
+}
+
 Latency::Summary Latency::summaryOf(std::vector<double> values) {
   if (values.empty()) return {};
   std::sort(values.begin(), values.end());

@@ -76,8 +76,8 @@ void QualityGovernor::reset(int possibleCuts) {
   tooSlow_.assign(static_cast<std::size_t>(possibleCuts) + 1, false);
 }
 
-void QualityGovernor::measured(double milliseconds) {
-  const double share = std::max(milliseconds, 1e-3) / kBudgetMs;
+void QualityGovernor::measured(double milliseconds, double budget) {
+  const double share = std::max(milliseconds, 1e-3) / budget;
   double& scale = quality_.scale;
   const auto cuts = static_cast<std::size_t>(quality_.cuts);
   if (share > 1) {

@@ -23,14 +23,13 @@ RenderOptions reduced(RenderOptions options, const MovingQuality& quality);
 
 class QualityGovernor {
  public:
-  static constexpr double kBudgetMs = 35;  ///< of a frame; what is left of 50 ms is the window's
   static constexpr double kLeastScale = 0.15;
 
   /// Begins anew with the least of everything, for a scene or settings whose cost is not known.
   void reset(int possibleCuts);
   const MovingQuality& quality() const { return quality_; }
-  /// A frame of quality() took so long.
-  void measured(double milliseconds);
+  /// A frame of quality() took so long, and might have taken so long as the budget [ms].
+  void measured(double milliseconds, double budget);
 
  private:
   MovingQuality quality_;

@@ -218,7 +218,7 @@ void PictureWorker::Drawing::serve(const ViewRequest& request) {
   }
   const MovingQuality quality = governor_.quality();
   ViewFrame frame = draw(request, reduced(picture.options, quality), FrameStage::moving);
-  governor_.measured(frame.milliseconds - frame.stats.compileMs);
+  governor_.measured(frame.milliseconds - frame.stats.compileMs, request.budgetMs);
   frame.leftOut = possibleCuts(picture.options);
   frame.leftOut.resize(std::min(frame.leftOut.size(), static_cast<std::size_t>(quality.cuts)));
   worker_.publish([&](ViewUpdates& updates) { updates.frame = std::move(frame); });

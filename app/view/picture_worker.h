@@ -26,6 +26,7 @@ struct ViewRequest {
   std::vector<std::string> arguments;  ///< preparationArguments()
   std::optional<Camera> camera;        ///< nothing = as the options say
   std::size_t shown = 0;               ///< which of its pictures: a model, a state
+  double budgetMs = 35;                ///< of a frame while moving
   bool moving = false;                 ///< soon followed by others: draw what can be drawn in time
   bool reread = false;                 ///< the file may have changed
 };

@@ -20,10 +20,13 @@
 namespace meniscus {
 namespace {
 
-// Without a change for so long, a picture stands still and is drawn in full [s].
-constexpr double kStill = 0.12;
+// Without a change for so long, a picture stands still and is drawn in full; longer while the mouse is held
+// [s].
+constexpr double kStill = 0.12, kStillHeld = 0.5;
+// From an input to the picture of it [ms]: what the window leaves of it is the frame's.
+constexpr double kLongestWait = 45, kLeastBudget = 12;
 // The window is drawn so often after something happened: widgets answer to what they see one frame later.
-constexpr int kRedraws = 3;
+constexpr int kRedraws = 2;
 
 std::string baseName(const std::string& file) {
   return std::filesystem::path(file).filename().string();
@@ -67,6 +70,7 @@ void Viewer::run() {
     const double wait = redraws > 0 ? 0 : secondsToWait();
     window_.wait(wait);
     if (wait != 0) redraws = kRedraws;
+    const bool wasDragging = dragging_;
     takeUpdates();
     advanceModels();
     submit();
@@ -79,10 +83,17 @@ void Viewer::run() {
       texture_.set(frame_->size, frame_->pixels);
       frame_->pixels = {};
     }
-    window_.draw([this] { layOut(); });
-    if (fresh) latency_.shown(frame_->request.number, frame_->stage == FrameStage::full);
+    const Clock::time_point start = Clock::now();
+    // While the mouse drags, the window only changes with the picture.
+    const bool seen = fresh || !(wasDragging && dragging_ && frame_);
+    window_.draw([this] { layOut(); }, seen);
+    if (seen) latency_.drewWindow(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
+    if (fresh) {
+      latency_.shown(frame_->request.number, frame_->stage == FrameStage::full);
+      if (frame_->stage == FrameStage::moving) latency_.drew(frame_->milliseconds);
+    }
     submit();
-    --redraws;
+    if (--redraws > 0 && dragging_) redraws = 0;
   }
 }
 
@@ -90,11 +101,15 @@ double Viewer::secondsToWait() const {
   const auto until = [](Clock::time_point when) {
     return std::max(1e-3, std::chrono::duration<double>(when - Clock::now()).count());
   };
-  if (playing) return until(nextModel_);
-  if (asked_.moving)
-    return until(lastChange_ +
-                 std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(kStill)));
+  const bool arrived = frame_ && frame_->request.number == asked_.number;
+  if (playing) return arrived ? until(nextModel_) : -1;
+  if (asked_.moving) return until(lastChange_ + stillAfter());
   return -1;
+}
+
+Viewer::Clock::duration Viewer::stillAfter() const {
+  return std::chrono::duration_cast<Clock::duration>(
+      std::chrono::duration<double>(dragging_ ? kStillHeld : kStill));
 }
 
 // Asks for a picture if what is to be seen is not what was asked for last.
@@ -113,7 +128,7 @@ void Viewer::submit() {
            a->nearest == b->nearest;
   };
   if (same && request.arguments == asked_.arguments && sameCamera(document.camera, asked_.camera)) {
-    const bool still = Clock::now() - lastChange_ > std::chrono::duration<double>(kStill);
+    const bool still = Clock::now() - lastChange_ >= stillAfter();
     if (!(asked_.moving && still && !playing)) return;
     moving_ = false;
   } else {
@@ -124,6 +139,7 @@ void Viewer::submit() {
   request.camera = document.camera;
   request.shown = document.shown;
   request.moving = moving_ || playing;
+  request.budgetMs = std::max(kLeastBudget, kLongestWait - latency_.recentWindowMs());
   request.reread = std::exchange(reread_, false);
   moving_ = false;
   askedRevision_ = document.revision();
@@ -382,6 +398,8 @@ std::string Viewer::statsAsJson() const {
   nlohmann::ordered_json stats{{"window", window_.api()},
                                {"input_to_picture_ms", json(latency_.moving())},
                                {"still_to_full_ms", json(latency_.full())},
+                               {"moving_frame_ms", json(latency_.frames())},
+                               {"window_ms", json(latency_.windows())},
                                {"messages", messages_}};
   return stats.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }

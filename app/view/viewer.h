@@ -99,6 +99,7 @@ class Viewer {
   void advanceModels();
   void submit();
   double secondsToWait() const;
+  Clock::duration stillAfter() const;
   void closeDocument(std::size_t index);
   std::vector<std::string> argumentsFor(const std::string& output);
 

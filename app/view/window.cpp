@@ -201,11 +201,15 @@ void Window::wake() {
   glfwPostEmptyEvent();
 }
 
-void Window::draw(const std::function<void()>& draw) {
+void Window::draw(const std::function<void()>& draw, bool seen) {
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   ImGui::NewFrame();
   draw();
+  if (!seen) {
+    ImGui::EndFrame();
+    return;
+  }
   ImGui::Render();
   int width = 0, height = 0;
   glfwGetFramebufferSize(window_, &width, &height);

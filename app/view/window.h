@@ -50,8 +50,9 @@ class Window {
   void wait(double seconds);
   /// Ends a wait; from any thread.
   static void wake();
-  /// One picture of the window: `draw` calls ImGui.
-  void draw(const std::function<void()>& draw);
+  /// One picture of the window: `draw` calls ImGui. It answers to input in any case, but the picture is only
+  /// made where it is to be `seen`: without a GPU it costs as much as a picture of a molecule.
+  void draw(const std::function<void()>& draw, bool seen);
   /// Window coordinates, and pixels for each of them.
   ImageSize size() const;
   double pixelsPerUnit() const;
