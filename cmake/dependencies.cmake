@@ -29,8 +29,8 @@ target_include_directories(meniscus_glm SYSTEM INTERFACE ${GLM_INCLUDE_DIR})
 find_program(GLAD_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH REQUIRED)
 find_path(EGL_INCLUDE_DIR EGL/egl.h REQUIRED)  # libegl-dev: declarations only, the library is opened at run time
 
+find_package(Threads REQUIRED)
 if(MENISCUS_VIEWER)
-  find_package(Threads REQUIRED)
   find_package(glfw3 REQUIRED)  # libglfw3-dev
   # libimgui-dev: Dear ImGui with its back ends for GLFW and OpenGL 3
   find_path(IMGUI_INCLUDE_DIR imgui.h PATH_SUFFIXES imgui REQUIRED)

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <map>
 #include <new>
 #include <utility>
 
@@ -74,7 +75,7 @@ class PictureWorker::Drawing {
   explicit Drawing(PictureWorker& worker) : worker_(worker), options_(timed(worker.base_)) { renew(); }
 
   void serve(const ViewRequest& request);
-  void save(const std::vector<std::string>& arguments);
+  void save(std::uint64_t document, const std::vector<std::string>& arguments);
   /// After OpenGL failed: begins anew with the next picture.
   void renew() {
     drawer_.reset();
@@ -86,7 +87,7 @@ class PictureWorker::Drawing {
 
  private:
   void prepare(const ViewRequest& request);
-  const std::string& bytesOf(const RenderOptions& options, bool reread);
+  const std::string& bytesOf(std::uint64_t document, const RenderOptions& options, bool reread);
   ViewFrame draw(const ViewRequest& request, RenderOptions options, FrameStage stage);
   void drawStill(const ViewRequest& request);
   Picture live(RenderOptions options) const;
@@ -99,8 +100,8 @@ class PictureWorker::Drawing {
   std::uint64_t number_ = 0;
   bool interruptible_ = false;
 
-  std::string file_, bytes_;            // a structure file as it was read
-  std::vector<std::string> arguments_;  // of preparation_
+  std::map<std::uint64_t, std::string> bytes_;  // structure files as they were read, by document
+  std::vector<std::string> arguments_;          // of preparation_
   GivenOptions sceneOptions_;
   ImageSize size_;
   std::uint64_t document_ = 0;
@@ -111,13 +112,12 @@ class PictureWorker::Drawing {
   QualityGovernor governor_;
 };
 
-const std::string& PictureWorker::Drawing::bytesOf(const RenderOptions& options, bool reread) {
-  const std::string file = options.scenes.empty() ? options.files.front() : "";
-  if (reread || file != file_) {
-    bytes_ = file.empty() ? "" : readBytes(file);
-    file_ = file;
-  }
-  return bytes_;
+// A file that has gone since or is being written again stays what it was.
+const std::string& PictureWorker::Drawing::bytesOf(std::uint64_t document, const RenderOptions& options,
+                                                   bool reread) {
+  std::string& bytes = bytes_[document];
+  if (options.scenes.empty() && (reread || bytes.empty())) bytes = readBytes(options.files.front());
+  return bytes;
 }
 
 // Reads and builds again only what the options that changed are about.
@@ -133,7 +133,8 @@ void PictureWorker::Drawing::prepare(const ViewRequest& request) {
   if (sameScene) {
     for (Picture& picture : preparation_->pictures) picture.options = options;
   } else {
-    auto made = std::make_shared<Preparation>(preparePictures(options, bytesOf(options, request.reread)));
+    auto made = std::make_shared<Preparation>(
+        preparePictures(options, bytesOf(request.document, options, request.reread)));
     primitives_.assign(made->pictures.size(), nullptr);
     preparation_ = std::move(made);
     document_ = request.document;
@@ -224,10 +225,10 @@ void PictureWorker::Drawing::serve(const ViewRequest& request) {
   worker_.publish([&](ViewUpdates& updates) { updates.frame = std::move(frame); });
 }
 
-void PictureWorker::Drawing::save(const std::vector<std::string>& arguments) {
+void PictureWorker::Drawing::save(std::uint64_t document, const std::vector<std::string>& arguments) {
   interruptible_ = false;
   const RenderOptions options = optionsFrom(arguments);
-  Preparation made = preparePictures(options, bytesOf(options, false));
+  Preparation made = preparePictures(options, bytesOf(document, options, false));
   for (Picture& picture : made.pictures) {
     const std::string name = picture.output;
     drawer_->draw(std::move(picture));
@@ -259,10 +260,10 @@ void PictureWorker::show(ViewRequest request) {
   wake_.notify_one();
 }
 
-void PictureWorker::save(std::vector<std::string> arguments) {
+void PictureWorker::save(std::uint64_t document, std::vector<std::string> arguments) {
   {
     const std::lock_guard lock(mutex_);
-    saves_.push_back(std::move(arguments));
+    saves_.emplace_back(document, std::move(arguments));
   }
   wake_.notify_one();
 }
@@ -301,10 +302,10 @@ void PictureWorker::run() {
     if (stop_) return;
     working_ = true;
     const bool saves = !saves_.empty();
-    std::vector<std::string> arguments;
+    std::pair<std::uint64_t, std::vector<std::string>> save;
     ViewRequest request;
     if (saves) {
-      arguments = std::move(saves_.front());
+      save = std::move(saves_.front());
       saves_.erase(saves_.begin());
     } else {
       request = std::move(*std::exchange(next_, std::nullopt));
@@ -313,7 +314,7 @@ void PictureWorker::run() {
     std::string failure;
     try {
       if (saves) {
-        drawing.save(arguments);
+        drawing.save(save.first, save.second);
       } else {
         drawing.serve(request);
       }

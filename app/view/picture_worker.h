@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "app/picture.h"
@@ -79,8 +80,9 @@ class PictureWorker {
   PictureWorker& operator=(const PictureWorker&) = delete;
 
   void show(ViewRequest request);
-  /// Draws and writes as `meniscus render` with these arguments does.
-  void save(std::vector<std::string> arguments);
+  /// Draws and writes as `meniscus render` with these arguments does, of the file as it was read for the
+  /// document.
+  void save(std::uint64_t document, std::vector<std::string> arguments);
   ViewUpdates take();
   /// Nothing to do and nothing to take.
   bool idle() const;
@@ -97,7 +99,7 @@ class PictureWorker {
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   std::optional<ViewRequest> next_;
-  std::vector<std::vector<std::string>> saves_;
+  std::vector<std::pair<std::uint64_t, std::vector<std::string>>> saves_;
   ViewUpdates updates_;
   bool hasUpdates_ = false, working_ = false, stop_ = false;
   std::thread thread_;

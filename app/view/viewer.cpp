@@ -119,7 +119,7 @@ void Viewer::submit() {
   const Document& document = *open.document;
   const bool same = asked_.number > 0 && asked_.document == open.id &&
                     askedRevision_ == document.revision() && askedOneByOne_ == document.oneByOne &&
-                    asked_.shown == document.shown && !reread_;
+                    asked_.shown == document.shown && !reread_ && !std::exchange(again_, false);
   ViewRequest request;
   request.arguments = preparationArguments(document, size_);
   const auto sameCamera = [](const std::optional<Camera>& a, const std::optional<Camera>& b) {
@@ -163,6 +163,8 @@ void Viewer::takeUpdates() {
   }
   if (updates.frame) {
     frame_ = std::move(updates.frame);
+    if (frame_->request.number == asked_.number && !documents_.empty())
+      documents_[current_].drawnRevision = askedRevision_;
     if (Document* shown = document();
         shown && frame_->request.document == documents_[current_].id && shown->camera) {
       shown->camera->projection = frame_->camera.projection;
@@ -187,8 +189,14 @@ void Viewer::takeFailure(std::uint64_t number, const std::string& message) {
   say(message, true);
   if (number != asked_.number || documents_.empty()) return;
   playing = false;
-  if (documents_[current_].made && documents_[current_].document->undo()) return;
-  if (!documents_[current_].made) closeDocument(current_);
+  const Open& open = documents_[current_];
+  if (!open.made) {
+    closeDocument(current_);
+  } else if (asked_.reread) {
+    again_ = true;  // of what was read before
+  } else if (askedRevision_ == open.drawnRevision || !open.document->undo()) {
+    failed_ = number;
+  }
 }
 
 void Viewer::say(const std::string& message, bool isError) {
@@ -299,7 +307,7 @@ void Viewer::save() {
   if (!document()) return;
   const std::string name = nextName();
   say("saving " + name);
-  worker_.save(argumentsFor(name));
+  worker_.save(documents_[current_].id, argumentsFor(name));
 }
 
 void Viewer::keepMeasure() {
@@ -386,7 +394,9 @@ void Viewer::layOut() {
   if (budgetShown) drawBudget(*this, budgetShown);
   if (helpShown) drawHelp(helpShown);
   window_.setTitle(document() ? fmt::format("{} - Meniscus{}", baseName(document()->file()),
-                                            finished() ? "" : " (drawing)")
+                                            finished()                 ? ""
+                                            : failed_ == asked_.number ? " (failed)"
+                                                                       : " (drawing)")
                               : "Meniscus");
 }
 

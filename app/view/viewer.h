@@ -77,6 +77,7 @@ class Viewer {
     std::uint64_t id = 0;
     std::unique_ptr<Document> document;
     std::shared_ptr<const Preparation> made;
+    std::uint64_t drawnRevision = 0;  ///< of the document's options, that could be drawn
   };
   /// Where the picture is in the window.
   struct Area {
@@ -119,7 +120,8 @@ class Viewer {
   std::uint64_t askedRevision_ = 0;
   bool askedOneByOne_ = false;
   bool moving_ = false;  // the next request is one of several
-  bool reread_ = false;
+  bool reread_ = false, again_ = false;
+  std::uint64_t failed_ = 0;  ///< a request that cannot be drawn
   Clock::time_point lastChange_ = Clock::now(), nextModel_ = Clock::now();
 
   bool dragging_ = false, pressed_ = false;

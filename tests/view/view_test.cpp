@@ -1,0 +1,260 @@
+// The window as its user knows it.
+
+#include <OpenImageIO/imageio.h>
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/view/window_fixture.h"
+
+namespace meniscus::test {
+namespace {
+
+constexpr int kPanel = 330;  // width of the panels
+
+std::string molecule(const std::string& name) {
+  return std::string(MENISCUS_MOLECULES "/") + name;
+}
+
+struct PdbAtom {
+  std::string name;  ///< as the viewer calls it
+  std::array<double, 3> position;
+};
+
+std::string field(const std::string& line, std::size_t from, std::size_t count) {
+  std::string text = line.substr(from, count);
+  std::erase(text, ' ');
+  return text;
+}
+
+/// Atoms of a PDB file without waters, in its order.
+std::vector<PdbAtom> atomsOf(const std::string& file) {
+  std::vector<PdbAtom> atoms;
+  std::istringstream lines(readFile(file));
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("ATOM  ") || line.size() < 54) continue;
+    atoms.push_back(
+        {field(line, 17, 3) + " " + field(line, 22, 4) + " " + field(line, 12, 4) + ", chain " +
+             field(line, 21, 1),
+         {std::stod(field(line, 30, 8)), std::stod(field(line, 38, 8)), std::stod(field(line, 46, 8))}});
+  }
+  return atoms;
+}
+
+/// Atoms' ids, rows from the top.
+struct Ids {
+  int width = 0, height = 0;
+  std::vector<std::uint32_t> of;
+};
+
+Ids readIds(const std::filesystem::path& exr) {
+  Ids ids;
+  const auto input = OIIO::ImageInput::open(exr.string());
+  EXPECT_TRUE(input) << OIIO::geterror();
+  if (!input) return ids;
+  const OIIO::ImageSpec& spec = input->spec();
+  ids.width = spec.width;
+  ids.height = spec.height;
+  std::vector<float> pixels(static_cast<std::size_t>(spec.image_pixels()) *
+                            static_cast<std::size_t>(spec.nchannels));
+  EXPECT_TRUE(input->read_image(0, 0, 0, -1, OIIO::TypeDesc::FLOAT, pixels.data()));
+  for (std::size_t i = 0; i < pixels.size(); i += static_cast<std::size_t>(spec.nchannels))
+    ids.of.push_back(static_cast<std::uint32_t>(pixels[i]));
+  return ids;
+}
+
+struct Seen {
+  std::size_t atom;
+  int x, y;
+};
+
+/// Atoms that are seen with all of their surroundings of 7 x 7 pixels, one pixel of each.
+std::vector<Seen> wellSeen(const Ids& ids) {
+  std::map<std::uint32_t, Seen> found;
+  const auto at = [&](int x, int y) { return ids.of[static_cast<std::size_t>(y * ids.width + x)]; };
+  for (int y = 3; y + 3 < ids.height; ++y) {
+    for (int x = 3; x + 3 < ids.width; ++x) {
+      const std::uint32_t id = at(x, y);
+      bool alone = id != 0;
+      for (int j = -3; j <= 3 && alone; ++j)
+        for (int i = -3; i <= 3; ++i) alone = alone && at(x + i, y + j) == id;
+      if (alone) found.try_emplace(id, Seen{id - 1, x, y});
+    }
+  }
+  std::vector<Seen> seen;
+  for (const auto& [id, place] : found) seen.push_back(place);
+  return seen;
+}
+
+nlohmann::json messages(const std::filesystem::path& stats) {
+  return nlohmann::json::parse(readFile(stats)).at("messages");
+}
+
+bool anyContains(const nlohmann::json& lines, const std::string& part) {
+  for (const auto& line : lines)
+    if (line.get<std::string>().find(part) != std::string::npos) return true;
+  return false;
+}
+
+TEST_F(WindowTest, RotatesPicksMeasuresSavesAndReproduces) {
+  const std::string file = molecule("1ubq.pdb");
+  const std::vector<PdbAtom> atoms = atomsOf(file);
+  ASSERT_NO_FATAL_FAILURE(open({file, "--size", "480x360", "--samples", "2"}));
+  ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
+  key("ctrl+c");
+  EXPECT_EQ(clipboard(), "meniscus render " + file + " -o 1ubq.png --samples=2 --size=480x360");
+
+  drag(kPanel + 200, 180, 60, 30);
+  ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
+  key("ctrl+c");
+  const std::string turned = clipboard();
+  EXPECT_NE(turned.find("--orient="), std::string::npos) << turned;
+
+  // What the command draws is where the atoms are.
+  const TemporaryFolder elsewhere;
+  ASSERT_EQ(runCommand(turned + " -o ids.exr --channels id", elsewhere.path()).exitCode, 0);
+  const std::vector<Seen> seen = wellSeen(readIds(elsewhere / "ids.exr"));
+  ASSERT_GT(seen.size(), 20u);
+  const Seen &first = seen.front(), &second = seen[seen.size() / 2];
+  click(kPanel + first.x, first.y);
+  click(kPanel + second.x, second.y);
+  key("ctrl+shift+c");
+  const PdbAtom &a = atoms.at(first.atom), &b = atoms.at(second.atom);
+  double square = 0;
+  for (std::size_t i = 0; i < 3; ++i) square += std::pow(a.position[i] - b.position[i], 2);
+  const std::string copied = clipboard();
+  EXPECT_TRUE(copied.starts_with(a.name + " - " + b.name + ": ")) << copied;
+  ASSERT_TRUE(copied.ends_with(" Å")) << copied;
+  EXPECT_NEAR(std::stod(copied.substr(copied.rfind(": ") + 2)), std::sqrt(square), 0.0051);
+
+  key("m");  // into the picture
+  key("3");
+  ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
+  key("ctrl+c");
+  const std::string command = clipboard();
+  EXPECT_NE(command.find("--representation=licorice"), std::string::npos) << command;
+  EXPECT_NE(command.find("--measure="), std::string::npos) << command;
+  key("ctrl+s");
+  waitFor("a picture", [&] { return std::filesystem::exists(folder_ / "1ubq.png"); });
+  ASSERT_EQ(runCommand(command, elsewhere.path()).exitCode, 0);
+  EXPECT_TRUE(readFile(folder_ / "1ubq.png") == readFile(elsewhere / "1ubq.png"));
+
+  key("ctrl+z");
+  ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
+  key("ctrl+c");
+  EXPECT_EQ(clipboard().find("--representation"), std::string::npos);
+  key("ctrl+y");
+  key("r");
+  ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
+  key("ctrl+c");
+  EXPECT_NE(clipboard().find("--representation=licorice"), std::string::npos);
+  EXPECT_EQ(clipboard().find("--orient"), std::string::npos);
+  EXPECT_EQ(quit(), 0);
+  const auto stats = nlohmann::json::parse(readFile(folder_ / "stats.json"));
+  EXPECT_GT(stats.at("input_to_picture_ms").at("count").get<int>(), 0);
+}
+
+TEST_F(WindowTest, BrokenAndMissingFilesAreMessages) {
+  writeFile(folder_ / "broken.pdb", "this is no structure\n");
+  std::filesystem::copy(molecule("adrenaline.pdb"), folder_ / "good.pdb");
+  ASSERT_NO_FATAL_FAILURE(open({"good.pdb", "broken.pdb", "--size", "320x240", "--samples", "1"}));
+  ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
+  key("Next");  // to the broken one, which is closed
+  ASSERT_NO_FATAL_FAILURE(waitForTitle("good.pdb - Meniscus"));
+  // What was read stays when the file goes.
+  std::filesystem::remove(folder_ / "good.pdb");
+  key("2");
+  ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
+  key("F5");
+  ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
+  // A command that the picture cannot follow is undone.
+  key("4");
+  ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
+  key("ctrl+c");
+  EXPECT_NE(clipboard().find("--representation=ball_and_stick"), std::string::npos);
+  EXPECT_EQ(quit(), 0);
+  const nlohmann::json said = messages(folder_ / "stats.json");
+  EXPECT_TRUE(anyContains(said, "broken.pdb")) << said;
+  EXPECT_TRUE(anyContains(said, "good.pdb: no such file")) << said;
+  EXPECT_TRUE(anyContains(said, "nothing that its representation draws")) << said;
+}
+
+TEST_F(WindowTest, OpensWithoutAFileAndWithABrokenOne) {
+  writeFile(folder_ / "broken.cif", "data_x\nloop_\n_atom_site.id\n");
+  ASSERT_NO_FATAL_FAILURE(open({"broken.cif"}));
+  ASSERT_NO_FATAL_FAILURE(waitForTitle("Meniscus"));
+  EXPECT_EQ(quit(), 0);
+  EXPECT_TRUE(anyContains(messages(folder_ / "stats.json"), "broken.cif"));
+  EXPECT_EQ(readFile(folder_ / "view.log"), "");
+}
+
+TEST_F(WindowTest, IsResized) {
+  ASSERT_NO_FATAL_FAILURE(open({molecule("adrenaline.pdb"), "--size", "320x240", "--samples", "2"}));
+  ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
+  resize(1, 1);
+  ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
+  resize(1280, 1024);
+  ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
+  key("ctrl+c");
+  EXPECT_NE(clipboard().find("--size=950x1024"), std::string::npos) << clipboard();
+  key("Tab");  // without panels
+  ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
+  key("ctrl+c");
+  EXPECT_NE(clipboard().find("--size=1280x1024"), std::string::npos) << clipboard();
+  EXPECT_EQ(quit(), 0);
+}
+
+TEST_F(WindowTest, SceneIsDrawnFromWhereItIsSeen) {
+  const std::string file = molecule("adrenaline.pdb");
+  ASSERT_EQ(
+      runCommand("meniscus render " + file +
+                     " -o first.png --size 320x240 --samples 2 --representation ball_and_stick --save-scene "
+                     "scene.mvsj",
+                 folder_.path())
+          .exitCode,
+      0);
+  ASSERT_NO_FATAL_FAILURE(open({"scene.mvsj", "--size", "320x240"}));
+  ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
+  drag(kPanel + 100, 100, 50, 20);
+  ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
+  key("ctrl+s");
+  waitFor("a picture", [&] { return std::filesystem::exists(folder_ / "scene.png"); });
+  std::filesystem::rename(folder_ / "scene.png", folder_ / "saved.png");
+  key("ctrl+c");
+  const ProcessResult again = runCommand(clipboard(), folder_.path());
+  ASSERT_EQ(again.exitCode, 0) << again.err;
+  EXPECT_TRUE(readFile(folder_ / "scene.png") == readFile(folder_ / "saved.png"));
+  EXPECT_FALSE(readFile(folder_ / "first.png") == readFile(folder_ / "saved.png"));
+  EXPECT_EQ(quit(), 0);
+}
+
+TEST(ViewWithoutDisplay, SaysSoAndNamesRender) {
+  ProcessOptions options;
+  options.environment = {{"DISPLAY", ""}, {"WAYLAND_DISPLAY", ""}};
+  const ProcessResult result = runProcess({MENISCUS_EXECUTABLE, "view", molecule("1ubq.pdb")}, options);
+  EXPECT_EQ(result.exitCode, 3);
+  EXPECT_TRUE(result.err.starts_with("meniscus: no window can be opened here")) << result.err;
+  EXPECT_NE(result.err.find("'meniscus render FILE -o OUT.png'"), std::string::npos) << result.err;
+  EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+}
+
+TEST(ViewWithoutDisplay, RefusesWhatIsNotForAWindow) {
+  const ProcessResult missing = runProcess({MENISCUS_EXECUTABLE, "view", "/nonexistent/x.pdb"});
+  EXPECT_EQ(missing.exitCode, 1);
+  EXPECT_EQ(missing.err, "meniscus: /nonexistent/x.pdb: no such file: check the path\n");
+  const ProcessResult output = runProcess({MENISCUS_EXECUTABLE, "view", molecule("1ubq.pdb"), "-o", "x.png"});
+  EXPECT_EQ(output.exitCode, 2);
+  EXPECT_TRUE(output.err.starts_with("meniscus: --output: is for meniscus render")) << output.err;
+  const ProcessResult help = runProcess({MENISCUS_EXECUTABLE, "view", "--help"});
+  EXPECT_EQ(help.exitCode, 0);
+  EXPECT_NE(help.out.find("Usage: meniscus view"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace meniscus::test

@@ -1,0 +1,68 @@
+#pragma once
+// `meniscus view` in a real window on a display of its own, driven as a user would: by mouse and keys.
+
+#include <gtest/gtest.h>
+#include <sys/types.h>
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tests/support/process.h"
+
+namespace meniscus::test {
+
+/// A program that runs beside the test; ended when this is.
+class BackgroundProcess {
+ public:
+  using Environment = std::vector<std::pair<std::string, std::string>>;
+  /// Standard output and error go to `log`. `keepOpen`: a descriptor that it inherits; -1 = none.
+  BackgroundProcess(const std::vector<std::string>& argv, const Environment& environment,
+                    const std::filesystem::path& folder, const std::filesystem::path& log, int keepOpen = -1);
+  ~BackgroundProcess();
+  BackgroundProcess(const BackgroundProcess&) = delete;
+  BackgroundProcess& operator=(const BackgroundProcess&) = delete;
+  bool running();
+  /// Waits for its end; its exit code, or minus the signal that ended it.
+  int wait();
+  pid_t id() const { return id_; }
+
+ private:
+  pid_t id_;
+  int code_ = -1;
+  bool ended_ = false;
+};
+
+class WindowTest : public testing::Test {
+ protected:
+  void SetUp() override;
+  void TearDown() override;
+
+  /// Starts `meniscus view` in the test's folder and waits for its window.
+  void open(const std::vector<std::string>& arguments);
+  /// Until the window's title says that its picture is finished.
+  void waitUntilDrawn();
+  void waitForTitle(const std::string& title);
+  std::string title();
+  /// Ctrl Q, and the exit code; statistics of --stats are in stats.json.
+  int quit();
+
+  void key(const std::string& keys);
+  void moveTo(int x, int y);  ///< in the window
+  void click(int x, int y, int button = 1);
+  void drag(int x, int y, int byX, int byY, int button = 1);
+  void resize(int width, int height);
+  std::string clipboard();
+  std::string xdotool(std::vector<std::string> arguments);
+  void waitFor(const std::string& what, const std::function<bool()>& happens);
+  /// Runs the copied command in another folder; the folder.
+  ProcessResult runCommand(const std::string& line, const std::filesystem::path& folder);
+
+  TemporaryFolder folder_;
+  std::string display_;
+  std::unique_ptr<BackgroundProcess> server_, viewer_;
+  std::string window_;
+};
+
+}  // namespace meniscus::test
