@@ -59,9 +59,9 @@ Camera dollied(Camera camera, ImageSize size, glm::dvec2 cursor, double factor) 
 }
 
 Camera focusedOn(Camera camera, ImageSize size, const BoundingSphere& sphere) {
-  const double half = 0.5 * camera.fovY;
+  const double half = std::atan(std::tan(0.5 * camera.fovY) / camera.zoom);
   const double tall = std::max(1.0, static_cast<double>(size.height) / size.width);
-  const double radius = std::max(sphere.radius, kLeastDistance) * tall / camera.zoom;
+  const double radius = std::max(sphere.radius, kLeastDistance) * tall;
   const double distance =
       radius / (camera.projection == Projection::perspective ? std::sin(half) : std::tan(half));
   if (camera.nearest) camera.nearest.reset();
