@@ -267,6 +267,8 @@ void RenderRun::drawAll(const Input& input, Prepared& prepared) {
   for (std::size_t i = 0; i < count && !interrupted(); ++i) {
     Picture& picture = made.pictures[i / frames];
     if (frames > 1 && !picture.primitives) picture.primitives = drawer_.primitivesOf(picture);
+    for (Picture& panel : picture.panels)
+      if (frames > 1 && !panel.primitives) panel.primitives = drawer_.primitivesOf(panel);
     Picture frame = frames > 1 ? picture : std::move(picture);  // its molecules go once they are primitives
     if (i % frames > 0) frame.exported.clear();                 // one mesh, however often it turns
     if (options_.turntable > 0) turn(frame, static_cast<int>(i % frames), options_, pattern_);

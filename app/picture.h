@@ -19,6 +19,8 @@ struct Picture {
   StructureFormat format = StructureFormat::mmcif;  ///< of `input`, if it is no scene
   RenderOptions options;  ///< size, samples, light, effects and format; not what is drawn
   Scene scene;            ///< with its camera; the light comes from the options
+  std::vector<Picture>
+      panels;  ///< drawn instead of the scene, by its camera; sizes are the drawer's business
   std::shared_ptr<const Primitives> primitives;  ///< of the scene, if they are there already
   std::string source;                            ///< recorded in the file: what it shows
   std::string command;                           ///< and how it was made

@@ -7,6 +7,7 @@
 
 #include "app/commands.h"
 #include "app/label_text.h"
+#include "core/buffer_sink.h"
 #include "core/error.h"
 #include "core/mesh/surface_mesh.h"
 #include "core/primitives.h"
@@ -148,6 +149,7 @@ void PictureDrawer::drawTo(Picture picture, RowSink& sink, const std::string& la
 
 PictureReport PictureDrawer::render(Picture& picture, RowSink& sink, const PixelLayout& layout,
                                     const std::string& label) {
+  if (!picture.panels.empty()) return renderPanels(picture, sink, label);
   const RenderOptions& options = picture.options;
   Scene& scene = picture.scene;
   std::shared_ptr<const Primitives> primitives =
@@ -162,11 +164,7 @@ PictureReport PictureDrawer::render(Picture& picture, RowSink& sink, const Pixel
       scene.labels, std::max(0.01 * options.labelSize * options.size.height, 1.0), options.labelFont);
   progress_.start(label);
   Renderer& draw = renderer();
-  if (primitives != shown_) {
-    shown_.reset();
-    draw.setPrimitives(primitives);
-    shown_ = std::move(primitives);
-  }
+  show(std::move(primitives));
   draw.setLabels(std::move(labels), options.labelColors);
   draw.renderPicture(view, lightFor(options), scene.background, settingsFor(options), layout, sink,
                      [this](double share) {
@@ -176,8 +174,34 @@ PictureReport PictureDrawer::render(Picture& picture, RowSink& sink, const Pixel
   return report;
 }
 
+// One after the other, by the camera of the whole.
+PictureReport PictureDrawer::renderPanels(Picture& picture, RowSink& sink, const std::string& label) {
+  const RenderOptions& options = picture.options;
+  const std::vector<PanelPlace> places = placePanels(picture.panels.size(), options.size, options.divider);
+  PanelCanvas canvas(options.size);
+  PictureReport report;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    Picture& panel = picture.panels[i];
+    panel.options.size = places[i].picture;
+    panel.scene.camera = seenBy(picture.scene.camera, panel.scene.camera);
+    std::vector<std::byte> bytes;
+    BufferSink buffer(bytes);
+    PictureReport own = render(panel, buffer, {PixelFormat::rgba8}, label);
+    canvas.paste(places[i], bytes);
+    const std::string& text = options.panels[i].label;
+    const double letters = std::max(0.01 * options.labelSize * options.size.height, 1.0);
+    for (const LabelSprite& sprite : drawLabels({{text, {}, 0}}, letters, options.labelFont))
+      canvas.write(places[i], sprite, options.labelColors);
+    if (i == 0) report = std::move(own);
+  }
+  sink.writeRows(canvas.bytes());
+  report.output = picture.output;
+  report.size = report_.size = options.size;
+  return report;
+}
+
 HitImage PictureDrawer::hits(const Picture& picture) {
-  MENISCUS_CHECK(picture.primitives != nullptr && picture.primitives == shown_);
+  show(picture.primitives);
   const View view = makeView(picture.scene.camera, picture.options.size, shown_->bounds());
   return renderer().renderHits(view, {false, false, true}, picture.options.surface, picture.options.quadrics);
 }
@@ -186,6 +210,13 @@ RenderStats PictureDrawer::takeStats() {
   RenderStats stats = renderer().stats();
   renderer().forgetStats();
   return stats;
+}
+
+void PictureDrawer::show(std::shared_ptr<const Primitives> primitives) {
+  if (primitives == shown_) return;
+  shown_.reset();
+  renderer().setPrimitives(primitives);
+  shown_ = std::move(primitives);
 }
 
 std::shared_ptr<const Primitives> PictureDrawer::primitivesOf(const Picture& picture) {

@@ -26,7 +26,7 @@ class PictureDrawer {
   void draw(Picture picture);
   /// The same, but the picture's rows to `sink` as 8-bit sRGB; progress says `label`.
   void drawTo(Picture picture, RowSink& sink, const std::string& label);
-  /// What the rays through the pixels' centres meet of a picture that drawTo() has drawn last.
+  /// What the rays through the pixels' centres meet of a picture with primitives: atoms' ids.
   HitImage hits(const Picture& picture);
   /// What was done since this was asked last.
   RenderStats takeStats();
@@ -38,6 +38,8 @@ class PictureDrawer {
  private:
   void exportMesh(Picture& picture);
   PictureReport render(Picture& picture, RowSink& sink, const PixelLayout& layout, const std::string& label);
+  PictureReport renderPanels(Picture& picture, RowSink& sink, const std::string& label);
+  void show(std::shared_ptr<const Primitives> primitives);
   Renderer& renderer();
 
   const RenderOptions& options_;

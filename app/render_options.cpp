@@ -104,6 +104,19 @@ void addOutputOptions(CLI::App& app, RenderOptions& o) {
               [&o](auto& n, auto& v) { o.dpi = parseNumber(n, v, 1, 100000, "pixels per inch"); });
 }
 
+void addPanelOptions(CLI::App& app, RenderOptions& o) {
+  OptionGroup group(app, "Panels");
+  group.values("--panel", "[LABEL: ]OPTIONS",
+               "Two to four pictures in one, seen by one camera; each with\n"
+               "options of its own, as in 'skin: --representation surface',\n"
+               "or the name of a representation. May be repeated",
+               [&o](auto& n, auto& v) { o.panels.push_back(parsePanel(n, v)); });
+  group.value("--divider", "F",
+              "Instead of beside each other, two panels lie on both sides of\n"
+              "a line through one picture, 0 to 1 of its width",
+              [&o](auto& n, auto& v) { o.divider = parseNumber(n, v, 0, 1); });
+}
+
 // Methods and their parameters, a line each.
 std::string surfaceMethodHelp() {
   std::string help = "How it is computed; all draw the same surface [auto]";
@@ -474,6 +487,20 @@ void requireOnlyPictureOptions(const RenderOptions& o) {
           fmt::format("--{}: is for structure files; with --scene, the scene says it (docs/scene.md)", name));
 }
 
+void requirePanelsConsistent(const RenderOptions& o) {
+  if (o.divider && o.panels.size() != 2)
+    throw UsageError("--divider: is between two panels; give --panel twice");
+  if (o.panels.empty()) return;
+  if (o.panels.size() == 1 || o.panels.size() > kMostPanels)
+    throw UsageError(
+        fmt::format("--panel: there are two to {} in a picture, not {}", kMostPanels, o.panels.size()));
+  if (!o.exportMesh.empty() || !o.saveScene.empty())
+    throw UsageError("--panel: pictures have panels; meshes and saved scenes do not");
+  if (o.bitDepth != 8 || o.layers != Layers{} ||
+      (!isFilm(o.output) && imageTypeOf(o.output) == ImageType::exr))
+    throw UsageError("--panel: is for PNG with 8 bits a channel and for films");
+}
+
 void requireConsistent(const CLI::App& app, RenderOptions& o) {
   if (o.files.empty() && o.scenes.empty())
     throw UsageError("no input; give a structure file, as in meniscus render FILE -o OUT.png");
@@ -494,6 +521,7 @@ void requireConsistent(const CLI::App& app, RenderOptions& o) {
         "--save-scene: writes what structure files and options mean; a scene is written already");
   if (!o.saveScene.empty() && !o.measures.empty())
     throw UsageError("--measure: a saved scene has no place for it; leave it or --save-scene out");
+  requirePanelsConsistent(o);
   requireFilmNames(o, OutputPattern(o.output));
   if (o.resume && o.manifest.empty())
     throw UsageError("--resume: needs the --manifest of the run that is to be continued");
@@ -546,6 +574,7 @@ void addAllOptions(CLI::App& app, RenderOptions& options) {
   addLookOptions(app, options);
   addSurfaceOptions(app, options);
   addLabelOptions(app, options);
+  addPanelOptions(app, options);
   addStyleOption(app);
   addLightOptions(app, options);
   addTraceOptions(app, options);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/option_values.h"
+#include "app/panels.h"
 #include "core/label_sprite.h"
 #include "core/render_settings.h"
 #include "core/scene.h"
@@ -53,6 +54,9 @@ struct RenderOptions {
   std::string focus;                 ///< CID; empty = everything
   std::optional<glm::dvec3> target;  ///< world point in the middle of the picture [Å]; nothing = fitted
   std::optional<double> distance, nearest;  ///< as in Camera [Å]; nothing = fitted, and as near as the eye
+
+  std::vector<PanelOptions> panels;  ///< none = one picture
+  std::optional<double> divider;     ///< of two panels, share of the width; nothing = they are apart
 
   ImageSize size;
   int samples = 16;

@@ -14,6 +14,7 @@
 #include "app/output_name.h"
 #include "app/run_report.h"
 #include "app/scene/mvs_camera.h"
+#include "app/scene/settings.h"
 #include "core/bonds.h"
 #include "core/camera_fit.h"
 #include "core/displacement.h"
@@ -265,6 +266,69 @@ Camera StructurePictures::cameraFor(const std::vector<Objects>& models) const {
   return camera;
 }
 
+// Options of a panel: those of all, and then its own.
+RenderOptions panelOptions(const RenderOptions& all, const PanelOptions& panel, ImageSize size) {
+  GivenOptions shared = all.given;
+  std::erase_if(shared, [](const auto& option) {
+    return option.first == "panel" || option.first == "divider" || option.first == "size";
+  });
+  std::vector<std::string> arguments = asArguments(shared);
+  arguments.insert(arguments.end(), panel.arguments.begin(), panel.arguments.end());
+  RenderOptions options = parseSettings(arguments);
+  options.output = all.output;
+  options.quadrics = all.quadrics;
+  options.size = size;
+  requireSettingsConsistent(options);
+  return options;
+}
+
+// That of the first panel, at a distance that suits all of them.
+Camera cameraOfPanels(const Preparation& all, const RenderOptions& options, ImageSize size) {
+  Camera camera = all.pictures.front().scene.camera;
+  if (!options.focus.empty()) return camera;
+  std::vector<FitSphere> spheres;
+  for (const Picture& picture : all.pictures) {
+    for (const Picture& panel : picture.panels) {
+      for (const SceneObject& object : panel.scene.objects) {
+        const std::vector<FitSphere> some = fitSpheres(object);
+        spheres.insert(spheres.end(), some.begin(), some.end());
+      }
+    }
+  }
+  camera = fitted(camera, size, spheres);
+  if (options.target) camera.target = *options.target;
+  if (options.distance) camera.distance = *options.distance;
+  return camera;
+}
+
+Preparation picturesWithPanels(const std::string& file, const std::string& bytes,
+                               const RenderOptions& options) {
+  const std::vector<PanelPlace> places = placePanels(options.panels.size(), options.size, options.divider);
+  Preparation all;
+  for (std::size_t i = 0; i < options.panels.size(); ++i) {
+    const RenderOptions own = panelOptions(options, options.panels[i], places[i].picture);
+    Preparation made = StructurePictures(file, own).make(bytes);
+    if (i == 0) {
+      all = made;
+    } else {
+      all.parseSeconds += made.parseSeconds;
+      all.bondsSeconds += made.bondsSeconds;
+    }
+    if (made.pictures.size() != all.pictures.size())
+      throw InputError(
+          fmt::format("'{}': its panels have different numbers of models; give them one --model", file));
+    for (std::size_t k = 0; k < made.pictures.size(); ++k)
+      all.pictures[k].panels.push_back(std::move(made.pictures[k]));
+  }
+  const Camera camera = cameraOfPanels(all, options, places.front().picture);
+  for (Picture& picture : all.pictures) {
+    picture.scene.camera = camera;
+    picture.options = options;
+    picture.command = "meniscus render " + picture.source + options.pictureOptions;
+  }
+  return all;
+}
+
 }  // namespace
 
 SceneObject objectAsAsked(const RenderOptions& options, std::shared_ptr<const Molecule> molecule) {
@@ -325,6 +389,7 @@ void requireMemory(const std::string& file, double atoms, double placed, double 
 }
 
 Preparation structurePictures(const std::string& file, std::string bytes, const RenderOptions& options) {
+  if (!options.panels.empty()) return picturesWithPanels(file, bytes, options);
   return StructurePictures(file, options).make(std::move(bytes));
 }
 

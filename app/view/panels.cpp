@@ -276,6 +276,51 @@ void cameraPanel(Viewer& viewer, const RenderOptions& o) {
   }
 }
 
+void comparePanel(Viewer& viewer) {
+  Document& document = *viewer.document();
+  std::vector<std::string> panels = document.values("panel");
+  bool changed = false;
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    ImGui::PushID(static_cast<int>(i));
+    changed = ImGui::InputText("##panel", &panels[i], ImGuiInputTextFlags_EnterReturnsTrue) || changed;
+    ImGui::PopID();
+  }
+  if (panels.size() < 2) {
+    if (ImGui::Button("Beside each other")) {
+      panels = {"ball_and_stick", "surface"};
+      changed = true;
+    }
+  } else {
+    if (ImGui::Button("One fewer")) {
+      panels.pop_back();
+      if (panels.size() == 1) panels.clear();
+      changed = true;
+    }
+    ImGui::SameLine();
+    if (!panels.empty() && panels.size() < kMostPanels && ImGui::Button("One more")) {
+      panels.emplace_back("cartoon");
+      changed = true;
+    }
+  }
+  if (panels.size() == 2 && !changed) {
+    bool divided = document.has("divider");
+    if (ImGui::Checkbox("one picture with a divider to drag", &divided)) {
+      if (divided) {
+        document.set("divider", "0.5");
+      } else {
+        document.remove("divider");
+      }
+    }
+  }
+  if (!changed) return;
+  GivenOptions given = document.given();
+  std::erase_if(given, [&](const auto& option) {
+    return option.first == "panel" || (option.first == "divider" && panels.size() != 2);
+  });
+  for (const std::string& panel : panels) given.emplace_back("panel", panel);
+  document.replace(std::move(given));
+}
+
 void modelsPanel(Viewer& viewer) {
   Document& document = *viewer.document();
   const Preparation* made = viewer.preparation();
@@ -360,6 +405,7 @@ void drawPanels(Viewer& viewer, double height) {
       if (ImGui::CollapsingHeader("Light")) lightPanel(viewer, *options);
       if (ImGui::CollapsingHeader("Surface")) surfacePanel(viewer, *options);
       if (ImGui::CollapsingHeader("Camera")) cameraPanel(viewer, *options);
+      if (structure && ImGui::CollapsingHeader("Compare")) comparePanel(viewer);
       if ((viewer.preparation()->modelCount > 1 || viewer.preparation()->pictures.size() > 1) &&
           ImGui::CollapsingHeader("Models", kOpen))
         modelsPanel(viewer);

@@ -14,6 +14,7 @@
 #include "app/scene/settings.h"
 #include "app/structure_pictures.h"
 #include "app/view/moving_quality.h"
+#include "core/buffer_sink.h"
 #include "core/error.h"
 #include "io/file_bytes.h"
 
@@ -25,17 +26,6 @@ using Clock = std::chrono::steady_clock;
 /// Thrown by a picture that is no longer wanted.
 struct Superseded {};
 
-class BufferSink : public RowSink {
- public:
-  explicit BufferSink(std::vector<std::byte>& bytes) : bytes_(bytes) {}
-  void writeRows(std::span<const std::byte> rows) override {
-    bytes_.insert(bytes_.end(), rows.begin(), rows.end());
-  }
-
- private:
-  std::vector<std::byte>& bytes_;
-};
-
 // Options about the picture that decide what there is to draw or from where, too.
 constexpr std::array<std::string_view, 7> kSceneToo{"background", "style",       "fov",     "orthographic",
                                                     "zoom",       "label-color", "outlines"};
@@ -43,10 +33,17 @@ constexpr std::array<std::string_view, 7> kSceneToo{"background", "style",      
 // What the scene of a structure is made from; other options only say how it is drawn.
 GivenOptions sceneOptions(GivenOptions given) {
   std::erase_if(given, [](const auto& option) {
-    return option.first == "size" ||
+    return option.first == "size" || option.first == "divider" ||
            (findSetting(SettingPlace::picture, option.first) &&
             std::find(kSceneToo.begin(), kSceneToo.end(), option.first) == kSceneToo.end());
   });
+  return given;
+}
+
+// Where the line between two panels is decides nothing about them.
+GivenOptions withoutDivider(GivenOptions given) {
+  std::erase_if(given,
+                [](const auto& option) { return option.first == "divider" || option.first == "size"; });
   return given;
 }
 
@@ -86,11 +83,13 @@ class PictureWorker::Drawing {
   }
 
  private:
+  using Change = std::function<RenderOptions(RenderOptions)>;
   void prepare(const ViewRequest& request);
   const std::string& bytesOf(std::uint64_t document, const RenderOptions& options, bool reread);
-  ViewFrame draw(const ViewRequest& request, RenderOptions options, FrameStage stage);
+  ViewFrame draw(const ViewRequest& request, const Change& change, FrameStage stage);
   void drawStill(const ViewRequest& request);
-  Picture live(RenderOptions options) const;
+  Picture live(const Change& change) const;
+  ViewHits hits(const ViewRequest& request);
 
   PictureWorker& worker_;
   const RenderOptions options_;
@@ -106,7 +105,9 @@ class PictureWorker::Drawing {
   ImageSize size_;
   std::uint64_t document_ = 0;
   std::shared_ptr<Preparation> preparation_;
-  std::vector<std::shared_ptr<const Primitives>> primitives_;  // of its pictures, once they are wanted
+  GivenOptions given_;
+  // Of its pictures, or of their panels, once they are wanted.
+  std::vector<std::vector<std::shared_ptr<const Primitives>>> primitives_;
   std::size_t shown_ = 0;
   Camera camera_;
   QualityGovernor governor_;
@@ -126,16 +127,18 @@ void PictureWorker::Drawing::prepare(const ViewRequest& request) {
     return;
   RenderOptions options = optionsFrom(request.arguments);
   GivenOptions sceneOptionsNow = sceneOptions(options.given);
+  GivenOptions given = withoutDivider(options.given);
   const bool sizeMatters = options.size != size_ && !request.camera;
   const bool sameScene = preparation_ && request.document == document_ && options.scenes.empty() &&
-                         !request.reread && !sizeMatters && sceneOptionsNow == sceneOptions_;
+                         !request.reread && !sizeMatters && sceneOptionsNow == sceneOptions_ &&
+                         (options.panels.empty() || given == given_);
   const int cuts = static_cast<int>(possibleCuts(options).size());
   if (sameScene) {
     for (Picture& picture : preparation_->pictures) picture.options = options;
   } else {
     auto made = std::make_shared<Preparation>(
         preparePictures(options, bytesOf(request.document, options, request.reread)));
-    primitives_.assign(made->pictures.size(), nullptr);
+    primitives_.assign(made->pictures.size(), {});
     preparation_ = std::move(made);
     document_ = request.document;
     sceneOptions_ = std::move(sceneOptionsNow);
@@ -145,24 +148,34 @@ void PictureWorker::Drawing::prepare(const ViewRequest& request) {
     });
   }
   size_ = options.size;
+  given_ = std::move(given);
   arguments_ = request.arguments;
   governor_.reset(cuts);
 }
 
-// Without what only files need.
-Picture PictureWorker::Drawing::live(RenderOptions options) const {
+// Without what only files need; `change` says what of it is drawn.
+Picture PictureWorker::Drawing::live(const Change& change) const {
+  const auto bare = [&](const Picture& whole, std::shared_ptr<const Primitives> primitives) {
+    Picture picture;
+    picture.input = whole.input;
+    picture.options = change(whole.options);
+    picture.scene.labels = whole.scene.labels;
+    picture.scene.background = whole.scene.background;
+    picture.scene.camera = whole.scene.camera;
+    picture.primitives = std::move(primitives);
+    return picture;
+  };
   const Picture& whole = preparation_->pictures[shown_];
-  Picture picture;
-  picture.input = whole.input;
-  picture.options = std::move(options);
-  picture.scene.labels = whole.scene.labels;
-  picture.scene.background = whole.scene.background;
+  Picture picture = bare(whole, primitives_[shown_].front());
   picture.scene.camera = camera_;
-  picture.primitives = primitives_[shown_];
+  for (std::size_t i = 0; i < whole.panels.size(); ++i)
+    picture.panels.push_back(bare(whole.panels[i], primitives_[shown_][i]));
   return picture;
 }
 
-ViewFrame PictureWorker::Drawing::draw(const ViewRequest& request, RenderOptions options, FrameStage stage) {
+ViewFrame PictureWorker::Drawing::draw(const ViewRequest& request, const Change& change, FrameStage stage) {
+  Picture picture = live(change);
+  const RenderOptions& options = picture.options;
   ViewFrame frame;
   frame.request = request;
   frame.stage = stage;
@@ -170,12 +183,12 @@ ViewFrame PictureWorker::Drawing::draw(const ViewRequest& request, RenderOptions
   frame.samples = options.samples;
   frame.camera = camera_;
   frame.pictureSize = preparation_->pictures[shown_].options.size;
-  frame.bounds = primitives_[shown_]->bounds();
+  frame.bounds = primitives_[shown_].front()->bounds();
   frame.pixels.reserve(std::size_t{4} * static_cast<std::size_t>(options.size.width) *
                        static_cast<std::size_t>(options.size.height));
   BufferSink sink(frame.pixels);
   const Clock::time_point start = Clock::now();
-  drawer_->drawTo(live(std::move(options)), sink, "");
+  drawer_->drawTo(std::move(picture), sink, "");
   frame.milliseconds = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
   frame.stats = drawer_->takeStats();
   report_ = {};
@@ -183,20 +196,50 @@ ViewFrame PictureWorker::Drawing::draw(const ViewRequest& request, RenderOptions
 }
 
 void PictureWorker::Drawing::drawStill(const ViewRequest& request) {
-  const Picture& picture = preparation_->pictures[shown_];
-  RenderOptions options = picture.options;
-  interruptible_ = true;
-  if (options.samples > 1) {
+  const auto asItIs = [](RenderOptions options) { return options; };
+  const auto oneRay = [](RenderOptions options) {
     options.samples = 1;
-    ViewFrame frame = draw(request, options, FrameStage::first);
+    return options;
+  };
+  interruptible_ = true;
+  if (preparation_->pictures[shown_].options.samples > 1) {
+    ViewFrame frame = draw(request, oneRay, FrameStage::first);
     worker_.publish([&](ViewUpdates& updates) { updates.frame = std::move(frame); });
   }
-  ViewFrame frame = draw(request, picture.options, FrameStage::full);
+  ViewFrame frame = draw(request, asItIs, FrameStage::full);
   worker_.publish([&](ViewUpdates& updates) { updates.frame = std::move(frame); });
   if (worker_.superseded(number_)) return;
-  ViewHits hits{request.number, drawer_->hits(live(picture.options)), preparation_, shown_};
+  ViewHits seen = hits(request);
+  worker_.publish([&](ViewUpdates& updates) { updates.hits = std::move(seen); });
+}
+
+ViewHits PictureWorker::Drawing::hits(const ViewRequest& request) {
+  ViewHits hits{request.number, {}, preparation_, shown_, {}};
+  Picture picture = live([](RenderOptions options) { return options; });
+  if (picture.panels.empty()) {
+    hits.image = drawer_->hits(picture);
+  } else {
+    const ImageSize size = picture.options.size;
+    hits.places = placePanels(picture.panels.size(), size, picture.options.divider);
+    hits.image.size = size;
+    hits.image.id.assign(static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height), 0);
+    for (std::size_t i = 0; i < hits.places.size(); ++i) {
+      const PanelPlace& place = hits.places[i];
+      Picture& panel = picture.panels[i];
+      panel.options.size = place.picture;
+      panel.scene.camera = seenBy(camera_, panel.scene.camera);
+      const HitImage own = drawer_->hits(panel);
+      for (int y = place.y; y < place.y + place.height; ++y) {
+        const int row = size.height - 1 - y, ownRow = place.picture.height - 1 - (y - place.pictureY);
+        const auto from = own.id.begin() + static_cast<std::ptrdiff_t>(ownRow) * place.picture.width +
+                          (place.x - place.pictureX);
+        std::copy_n(from, place.width,
+                    hits.image.id.begin() + static_cast<std::ptrdiff_t>(row) * size.width + place.x);
+      }
+    }
+  }
   drawer_->takeStats();
-  worker_.publish([&](ViewUpdates& updates) { updates.hits = std::move(hits); });
+  return hits;
 }
 
 void PictureWorker::Drawing::serve(const ViewRequest& request) {
@@ -205,20 +248,20 @@ void PictureWorker::Drawing::serve(const ViewRequest& request) {
   prepare(request);
   shown_ = std::min(request.shown, preparation_->pictures.size() - 1);
   const Picture& picture = preparation_->pictures[shown_];
-  if (!primitives_[shown_]) primitives_[shown_] = drawer_->primitivesOf(picture);
-  camera_ = picture.scene.camera;
-  if (request.camera) {
-    camera_.orientation = request.camera->orientation;
-    camera_.target = request.camera->target;
-    camera_.distance = request.camera->distance;
-    camera_.nearest = request.camera->nearest;
+  if (primitives_[shown_].empty()) {
+    std::vector<std::shared_ptr<const Primitives>> made;
+    for (const Picture& panel : picture.panels) made.push_back(drawer_->primitivesOf(panel));
+    if (made.empty()) made.push_back(drawer_->primitivesOf(picture));
+    primitives_[shown_] = std::move(made);
   }
+  camera_ = request.camera ? seenBy(*request.camera, picture.scene.camera) : picture.scene.camera;
   if (!request.moving) {
     drawStill(request);
     return;
   }
   const MovingQuality quality = governor_.quality();
-  ViewFrame frame = draw(request, reduced(picture.options, quality), FrameStage::moving);
+  ViewFrame frame = draw(
+      request, [&](RenderOptions o) { return reduced(std::move(o), quality); }, FrameStage::moving);
   governor_.measured(frame.milliseconds - frame.stats.compileMs, request.budgetMs);
   frame.leftOut = possibleCuts(picture.options);
   frame.leftOut.resize(std::min(frame.leftOut.size(), static_cast<std::size_t>(quality.cuts)));

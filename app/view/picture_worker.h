@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/panels.h"
 #include "app/picture.h"
 #include "core/hit_image.h"
 #include "render/render_stats.h"
@@ -58,6 +59,7 @@ struct ViewHits {
   HitImage image;
   std::shared_ptr<const Preparation> preparation;
   std::size_t shown = 0;
+  std::vector<PanelPlace> places;  ///< of its panels, if it has some
 };
 
 struct ViewUpdates {

@@ -381,7 +381,15 @@ void Viewer::layOut() {
     background->PushClipRect(at(area_.x, area_.y), at(area_.x + area_.width, area_.y + area_.height));
     background->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture_.name())),
                          at(x, area_.y), at(x + width, area_.y + area_.height));
-    if (const auto now = camera()) drawPicks(document()->picks, *now, size_, place, contentScale());
+    if (const auto now = camera()) {
+      for (const Part& part : parts()) {
+        const PicturePlace own{area_.x + part.corner.x / scale,
+                               area_.y + area_.height - (part.corner.y + part.size.height) / scale,
+                               part.size.height / scale, scale};
+        drawPicks(document()->picks, *now, part.size, own, contentScale());
+        if (document()->has("divider")) break;  // both lie in one place
+      }
+    }
     background->PopClipRect();
   } else if (!document()) {
     drawInvitation(place);

@@ -86,7 +86,7 @@ class Viewer {
 
   void layOut();
   void handleMouse();
-  void handleDrag(Camera camera, glm::dvec2 from, glm::dvec2 to);
+  void handleDrag(const Camera& camera, glm::dvec2 from, glm::dvec2 to);
   void handleWheel(double steps);
   void handleKey(int key, bool control, bool shift);
   void dragLight(glm::dvec2 by);
@@ -97,6 +97,14 @@ class Viewer {
   std::uint32_t idAt(glm::dvec2 pixel) const;
   std::optional<PlacedAtom> atomAt(glm::dvec2 pixel) const;
   glm::dvec2 cursor() const;  ///< in pixels of the picture
+  /// A panel, or the whole picture: its size, and where its lower left corner is.
+  struct Part {
+    ImageSize size;
+    glm::dvec2 corner{0.0};
+  };
+  std::vector<Part> parts() const;
+  Part partAt(glm::dvec2 pixel) const;
+  std::optional<double> dividerAt(glm::dvec2 pixel) const;
   void advanceModels();
   void submit();
   double secondsToWait() const;
@@ -124,7 +132,7 @@ class Viewer {
   std::uint64_t failed_ = 0;  ///< a request that cannot be drawn
   Clock::time_point lastChange_ = Clock::now(), nextModel_ = Clock::now();
 
-  bool dragging_ = false, pressed_ = false;
+  bool dragging_ = false, pressed_ = false, onDivider_ = false;
   glm::dvec2 pressedAt_{0.0}, lastCursor_{0.0};
   struct WantedPick {
     glm::dvec2 pixel;

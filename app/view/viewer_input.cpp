@@ -12,6 +12,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/trigonometric.hpp>
 
+#include "app/panels.h"
 #include "app/view/camera_moves.h"
 #include "app/view/viewer.h"
 
@@ -28,6 +29,7 @@ constexpr double kClipStep = 0.01;
 constexpr double kFocus = 8;
 constexpr double kLightRadPerPixel = 0.006;
 constexpr double kKeyTurnDeg = 10;
+constexpr double kGrip = 6;  // of the divider, on each side [window's units]
 
 glm::dvec2 of(const ImVec2& v) {
   return {static_cast<double>(v.x), static_cast<double>(v.y)};
@@ -39,6 +41,41 @@ glm::dvec2 Viewer::cursor() const {
   const glm::dvec2 mouse = of(ImGui::GetIO().MousePos);
   const double scale = window_.pixelsPerUnit();
   return {(mouse.x - area_.x) * scale, size_.height - (mouse.y - area_.y) * scale};
+}
+
+namespace {
+
+std::vector<PanelPlace> placesOf(const Document& document, ImageSize size) {
+  const std::size_t panels = document.values("panel").size();
+  if (panels < 2 || panels > kMostPanels) return {};
+  const std::optional<std::string> divider = document.value("divider");
+  return placePanels(panels, size,
+                     divider ? std::optional(parseNumber("--divider", *divider, 0, 1)) : std::nullopt);
+}
+
+}  // namespace
+
+std::vector<Viewer::Part> Viewer::parts() const {
+  std::vector<Part> parts;
+  for (const PanelPlace& place : placesOf(*documents_[current_].document, size_))
+    parts.push_back({place.picture, {place.pictureX, size_.height - place.pictureY - place.picture.height}});
+  if (parts.empty()) parts.push_back({size_, {0, 0}});
+  return parts;
+}
+
+Viewer::Part Viewer::partAt(glm::dvec2 pixel) const {
+  const std::vector<PanelPlace> places = placesOf(*documents_[current_].document, size_);
+  for (std::size_t i = 0; i < places.size(); ++i)
+    if (places[i].holds(pixel.x, size_.height - pixel.y)) return parts()[i];
+  return parts().front();
+}
+
+// Where the divider is, if the cursor is on it.
+std::optional<double> Viewer::dividerAt(glm::dvec2 pixel) const {
+  const std::optional<std::string> divider = documents_[current_].document->value("divider");
+  if (!divider) return std::nullopt;
+  const double at = parseNumber("--divider", *divider, 0, 1) * size_.width;
+  return std::abs(pixel.x - at) < kGrip * window_.pixelsPerUnit() ? std::optional(at) : std::nullopt;
 }
 
 std::uint32_t Viewer::idAt(glm::dvec2 pixel) const {
@@ -53,7 +90,11 @@ std::uint32_t Viewer::idAt(glm::dvec2 pixel) const {
 std::optional<PlacedAtom> Viewer::atomAt(glm::dvec2 pixel) const {
   const std::uint32_t id = idAt(pixel);
   if (id == 0) return std::nullopt;
-  return atomOfId(hits_->preparation->pictures[hits_->shown].scene, id);
+  const Picture& picture = hits_->preparation->pictures[hits_->shown];
+  for (std::size_t i = 0; i < hits_->places.size(); ++i)
+    if (hits_->places[i].holds(pixel.x, hits_->image.size.height - pixel.y))
+      return atomOfId(picture.panels[i].scene, id);
+  return atomOfId(picture.scene, id);
 }
 
 void Viewer::handleMouse() {
@@ -79,13 +120,18 @@ void Viewer::handleMouse() {
   if (free && anyDown && !dragging_ && !pressed_) {
     pressed_ = true;
     pressedAt_ = now;
+    onDivider_ = io.MouseDown[0] && dividerAt(now).has_value();
   }
   const double scale = window_.pixelsPerUnit();
   if (pressed_ && glm::length(now - pressedAt_) > kClick * scale) {
     dragging_ = true;
     pressed_ = false;
   }
-  if (dragging_ && anyDown && now != before) {
+  if (free && (onDivider_ || (!anyDown && dividerAt(now)))) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+  if (dragging_ && anyDown && onDivider_) {
+    document()->set("divider", fmt::format("{:.4f}", std::clamp(now.x / size_.width, 0.0, 1.0)), true);
+    moving_ = true;
+  } else if (dragging_ && anyDown && now != before) {
     if (const auto from = camera()) handleDrag(*from, before, now);
   }
   if (pressed_ && !anyDown) {
@@ -101,14 +147,17 @@ void Viewer::handleMouse() {
     if (const auto atom = atomAt(now)) hover_ = nameOf(*atom->molecule, atom->atom);
 }
 
-void Viewer::handleDrag(Camera from, glm::dvec2 before, glm::dvec2 now) {
+void Viewer::handleDrag(const Camera& from, glm::dvec2 before, glm::dvec2 now) {
   const ImGuiIO& io = ImGui::GetIO();
+  const Part part = partAt(pressedAt_);
+  before -= part.corner;
+  now -= part.corner;
   if (io.MouseDown[0] && io.KeyCtrl) {
     dragLight(now - before);
   } else if (io.MouseDown[0] && !io.KeyShift) {
-    moveCamera(turned(from, size_, before, now));
+    moveCamera(turned(from, part.size, before, now));
   } else {
-    moveCamera(panned(from, size_, before, now));
+    moveCamera(panned(from, part.size, before, now));
   }
 }
 
@@ -133,7 +182,8 @@ void Viewer::handleWheel(double steps) {
   if (ImGui::GetIO().KeyCtrl) {
     moveCamera(clippedBy(*from, frame_->bounds, kClipStep * steps));
   } else {
-    moveCamera(dollied(*from, size_, cursor(), std::pow(kDolly, steps)));
+    const Part part = partAt(cursor());
+    moveCamera(dollied(*from, part.size, cursor() - part.corner, std::pow(kDolly, steps)));
   }
 }
 
@@ -147,7 +197,7 @@ void Viewer::resolvePick() {
     return;
   }
   if (wanted.focus) {
-    document()->camera = focusedOn(*camera(), size_, {atom->position, kFocus});
+    document()->camera = focusedOn(*camera(), parts().front().size, {atom->position, kFocus});
     return;
   }
   const Molecule& shown = *atom->molecule;

@@ -210,6 +210,26 @@ TEST_F(WindowTest, IsResized) {
   EXPECT_EQ(quit(), 0);
 }
 
+TEST_F(WindowTest, DividerIsDragged) {
+  ASSERT_NO_FATAL_FAILURE(
+      open({molecule("adrenaline.pdb"), "--size", "320x240", "--samples", "2", "--panel", "ball_and_stick",
+            "--panel", "skin: --representation surface", "--divider", "0.5"}));
+  ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
+  drag(kPanel + 160, 120, -80, 0);
+  ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
+  key("ctrl+s");
+  waitFor("a picture", [&] { return std::filesystem::exists(folder_ / "adrenaline.png"); });
+  std::filesystem::rename(folder_ / "adrenaline.png", folder_ / "saved.png");
+  key("ctrl+c");
+  const std::string command = clipboard();
+  EXPECT_NE(command.find("--divider=0.25"), std::string::npos) << command;
+  EXPECT_EQ(command.find("--orient"), std::string::npos) << command;  // the molecule has not turned
+  const ProcessResult again = runCommand(command, folder_.path());
+  ASSERT_EQ(again.exitCode, 0) << again.err;
+  EXPECT_TRUE(readFile(folder_ / "adrenaline.png") == readFile(folder_ / "saved.png"));
+  EXPECT_EQ(quit(), 0);
+}
+
 TEST_F(WindowTest, SceneIsDrawnFromWhereItIsSeen) {
   const std::string file = molecule("adrenaline.pdb");
   ASSERT_EQ(
