@@ -166,6 +166,7 @@ PictureReport PictureDrawer::render(Picture& picture, RowSink& sink, const Pixel
   Renderer& draw = renderer();
   show(std::move(primitives));
   draw.setLabels(std::move(labels), options.labelColors);
+  draw.setPreview(layout.format == PixelFormat::rgba8 ? preview : PicturePreview{});
   draw.renderPicture(view, lightFor(options), scene.background, settingsFor(options), layout, sink,
                      [this](double share) {
                        if (watch) watch();

@@ -22,6 +22,9 @@ class PictureDrawer {
   /// Called now and then while a picture is drawn; what it throws ends the picture, of which nothing is left.
   std::function<void()> watch;
 
+  /// Of pictures that drawTo() draws and that have no panels.
+  PicturePreview preview;
+
   /// Writes the picture's files. Throws Error; then nothing is written.
   void draw(Picture picture);
   /// The same, but the picture's rows to `sink` as 8-bit sRGB; progress says `label`.

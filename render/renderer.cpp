@@ -154,6 +154,7 @@ struct Renderer::Impl {
   DepthUnsharpUniforms unsharpUniforms;
   std::vector<LabelSprite> labels;
   LabelColors labelColors;
+  PicturePreview preview;
   LabelBuffers labelBuffers;
   gl::Buffer viewUniforms;
   SurfaceReader surfaceReader;
@@ -300,6 +301,8 @@ struct Renderer::Impl {
   void drawTile(const Frame& frame, const Tile& part, const gl::Texture& picture, LayerTexels& texels,
                 const std::function<void(double)>& progress);
   void drawData(const Frame& frame, const Tile& tile, LayerTexels& texels);
+  void resolve(const Frame& frame, int samples, const gl::Texture& sum, const gl::Texture& picture);
+  void showPreview(const Frame& frame, const Tile& tile, const gl::Texture& picture, int samples);
   void execute(FrameGraph& graph) { graph.execute(stats, options.timePasses); }
 };
 
@@ -325,6 +328,10 @@ void Renderer::setPrimitives(std::shared_ptr<const Primitives> primitives) {
 void Renderer::setLabels(std::vector<LabelSprite> labels, const LabelColors& colors) {
   impl_->labels = std::move(labels);
   impl_->labelColors = colors;
+}
+
+void Renderer::setPreview(PicturePreview preview) {
+  impl_->preview = std::move(preview);
 }
 
 // The same primitives as seen from the key light, with only their depth wanted.
@@ -451,13 +458,37 @@ void Renderer::Impl::drawTile(const Frame& frame, const Tile& part, const gl::Te
                graph.import("sum", *sum, i == 0 ? Clear::zero : Clear::none));
     execute(graph);
     progress((i + 1.0) / samples);
+    const bool whole = part.width == frame.view.size.width && part.height == frame.view.size.height;
+    if (i + 1 < samples && whole && !frame.layers.data() && preview.wanted && preview.wanted()) {
+      resolve(frame, i + 1, *sum, picture);
+      showPreview(frame, tile, picture, i + 1);
+    }
   }
+  resolve(frame, samples, *sum, picture);
+}
+
+void Renderer::Impl::resolve(const Frame& frame, int samples, const gl::Texture& sum,
+                             const gl::Texture& picture) {
   FrameGraph graph(pool);
   const TextureRef target = graph.import("picture", picture, Clear::none);
   addResolve(graph, {samples, backdrop(frame.shade.background), frame.shade.encodeSrgb}, shaders,
-             graph.import("sum", *sum, Clear::none), target);
+             graph.import("sum", sum, Clear::none), target);
   graph.want(target);
   execute(graph);
+}
+
+// Of the whole picture, which has no margin, because nothing lies beyond it.
+void Renderer::Impl::showPreview(const Frame& frame, const Tile& tile, const gl::Texture& picture,
+                                 int samples) {
+  MENISCUS_CHECK(tile.x == 0 && tile.y == 0 && picture.bytes() % static_cast<std::size_t>(tile.height) == 0);
+  std::vector<std::byte> rows(picture.bytes());
+  picture.read(tile.width, tile.height, frame.view.size.width, rows.data());
+  const std::size_t rowBytes = rows.size() / static_cast<std::size_t>(tile.height);
+  for (std::size_t low = 0, high = rows.size() - rowBytes; low < high; low += rowBytes, high -= rowBytes)
+    std::swap_ranges(rows.begin() + static_cast<std::ptrdiff_t>(low),
+                     rows.begin() + static_cast<std::ptrdiff_t>(low + rowBytes),
+                     rows.begin() + static_cast<std::ptrdiff_t>(high));
+  preview.show(samples, rows);
 }
 
 void Renderer::renderPicture(const View& view, const Lighting& lighting, const Background& background,

@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/hit_image.h"
@@ -39,6 +40,13 @@ struct SurfaceLayerImage {
   std::vector<std::uint32_t> rest;  ///< how many more there are, row by row
 };
 
+/// Between two samples of a picture that is drawn in one tile without data layers: whether the mean of those
+/// so far is `wanted`, and if so that, as the rows of the whole picture from the top.
+struct PicturePreview {
+  std::function<bool()> wanted;
+  std::function<void(int samples, std::span<const std::byte> rows)> show;
+};
+
 /// Needs a current OpenGL 4.5 core context for its whole life.
 class Renderer {
  public:
@@ -51,6 +59,9 @@ class Renderer {
 
   /// Labels of the pictures from now on.
   void setLabels(std::vector<LabelSprite> labels, const LabelColors& colors);
+
+  /// Of the pictures from now on; empty functions = none.
+  void setPreview(PicturePreview preview);
 
   /// Draws a picture of view.size and hands its rows to `sink` from the top. What `layout` leaves out is not
   /// computed. `progress` gets the finished share 0..1; what it throws ends the picture.

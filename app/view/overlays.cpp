@@ -132,9 +132,9 @@ void drawBudget(const Viewer& viewer, bool& shown) {
   if (ImGui::Begin("What the picture cost", &shown,
                    ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing) &&
       frame) {
-    const char* stage = frame->stage == FrameStage::moving  ? "moving"
-                        : frame->stage == FrameStage::first ? "first"
-                                                            : "full";
+    const char* stage = frame->stage == FrameStage::moving     ? "moving"
+                        : frame->stage == FrameStage::refining ? "refining"
+                                                               : "full";
     ImGui::Text("%s: %d x %d, %d rays a pixel, %.1f ms", stage, frame->size.width, frame->size.height,
                 frame->samples, frame->milliseconds);
     ImGui::Text("input to picture %.0f ms, to full quality %.0f ms", viewer.latency().lastMovingMs(),
@@ -160,6 +160,8 @@ void drawBudget(const Viewer& viewer, bool& shown) {
                                                              frame->pictureSize.width /
                                                              frame->pictureSize.height);
       for (const std::string& cut : frame->leftOut) ImGui::BulletText("%s", cut.c_str());
+    } else if (frame->stage == FrameStage::refining) {
+      ImGui::BulletText("rays that are still to come");
     } else {
       ImGui::BulletText("nothing");
     }

@@ -29,7 +29,7 @@ void filesPanel(Viewer& viewer) {
   const Preparation* made = viewer.preparation();
   if (!made) return;
   const std::size_t remarks = made->notes.size() + made->unsupported.size();
-  if (remarks > 0 && ImGui::TreeNode("remarks", "%zu remarks", remarks)) {
+  if (remarks > 0 && ImGui::TreeNode("remarks", "remarks: %zu", remarks)) {
     for (const auto* lines : {&made->unsupported, &made->notes})
       for (const std::string& line : *lines) ImGui::TextWrapped("%s", line.c_str());
     ImGui::TreePop();

@@ -23,6 +23,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+// A preview costs about as much as a sample, and the window as much again.
+constexpr std::chrono::milliseconds kBetweenPreviews{200};
+
 /// Thrown by a picture that is no longer wanted.
 struct Superseded {};
 
@@ -87,6 +90,7 @@ class PictureWorker::Drawing {
   void prepare(const ViewRequest& request);
   const std::string& bytesOf(std::uint64_t document, const RenderOptions& options, bool reread);
   ViewFrame draw(const ViewRequest& request, const Change& change, FrameStage stage);
+  ViewFrame emptyFrame(const ViewRequest& request, const RenderOptions& options, FrameStage stage) const;
   void drawStill(const ViewRequest& request);
   Picture live(const Change& change) const;
   ViewHits hits(const ViewRequest& request);
@@ -173,9 +177,8 @@ Picture PictureWorker::Drawing::live(const Change& change) const {
   return picture;
 }
 
-ViewFrame PictureWorker::Drawing::draw(const ViewRequest& request, const Change& change, FrameStage stage) {
-  Picture picture = live(change);
-  const RenderOptions& options = picture.options;
+ViewFrame PictureWorker::Drawing::emptyFrame(const ViewRequest& request, const RenderOptions& options,
+                                             FrameStage stage) const {
   ViewFrame frame;
   frame.request = request;
   frame.stage = stage;
@@ -184,8 +187,14 @@ ViewFrame PictureWorker::Drawing::draw(const ViewRequest& request, const Change&
   frame.camera = camera_;
   frame.pictureSize = preparation_->pictures[shown_].options.size;
   frame.bounds = primitives_[shown_].front()->bounds();
-  frame.pixels.reserve(std::size_t{4} * static_cast<std::size_t>(options.size.width) *
-                       static_cast<std::size_t>(options.size.height));
+  return frame;
+}
+
+ViewFrame PictureWorker::Drawing::draw(const ViewRequest& request, const Change& change, FrameStage stage) {
+  Picture picture = live(change);
+  ViewFrame frame = emptyFrame(request, picture.options, stage);
+  frame.pixels.reserve(std::size_t{4} * static_cast<std::size_t>(frame.size.width) *
+                       static_cast<std::size_t>(frame.size.height));
   BufferSink sink(frame.pixels);
   const Clock::time_point start = Clock::now();
   drawer_->drawTo(std::move(picture), sink, "");
@@ -195,6 +204,7 @@ ViewFrame PictureWorker::Drawing::draw(const ViewRequest& request, const Change&
   return frame;
 }
 
+// A picture of many rays is shown as it becomes one. Panels are not, but first with one ray.
 void PictureWorker::Drawing::drawStill(const ViewRequest& request) {
   const auto asItIs = [](RenderOptions options) { return options; };
   const auto oneRay = [](RenderOptions options) {
@@ -202,11 +212,26 @@ void PictureWorker::Drawing::drawStill(const ViewRequest& request) {
     return options;
   };
   interruptible_ = true;
-  if (preparation_->pictures[shown_].options.samples > 1) {
-    ViewFrame frame = draw(request, oneRay, FrameStage::first);
+  const Picture& picture = preparation_->pictures[shown_];
+  if (!picture.panels.empty() && picture.options.samples > 1) {
+    ViewFrame frame = draw(request, oneRay, FrameStage::refining);
     worker_.publish([&](ViewUpdates& updates) { updates.frame = std::move(frame); });
   }
+  const Clock::time_point start = Clock::now();
+  Clock::time_point next = start;
+  if (picture.panels.empty())
+    drawer_->preview = {[&] { return Clock::now() >= next; },
+                        [&](int samples, std::span<const std::byte> rows) {
+                          ViewFrame frame = emptyFrame(request, picture.options, FrameStage::refining);
+                          frame.samples = samples;
+                          frame.pixels.assign(rows.begin(), rows.end());
+                          const Clock::time_point now = Clock::now();
+                          frame.milliseconds = std::chrono::duration<double, std::milli>(now - start).count();
+                          worker_.publish([&](ViewUpdates& updates) { updates.frame = std::move(frame); });
+                          next = now + kBetweenPreviews;
+                        }};
   ViewFrame frame = draw(request, asItIs, FrameStage::full);
+  drawer_->preview = {};
   worker_.publish([&](ViewUpdates& updates) { updates.frame = std::move(frame); });
   if (worker_.superseded(number_)) return;
   ViewHits seen = hits(request);
@@ -245,6 +270,7 @@ ViewHits PictureWorker::Drawing::hits(const ViewRequest& request) {
 void PictureWorker::Drawing::serve(const ViewRequest& request) {
   number_ = request.number;
   interruptible_ = false;
+  drawer_->preview = {};
   prepare(request);
   shown_ = std::min(request.shown, preparation_->pictures.size() - 1);
   const Picture& picture = preparation_->pictures[shown_];
@@ -270,6 +296,7 @@ void PictureWorker::Drawing::serve(const ViewRequest& request) {
 
 void PictureWorker::Drawing::save(std::uint64_t document, const std::vector<std::string>& arguments) {
   interruptible_ = false;
+  drawer_->preview = {};
   const RenderOptions options = optionsFrom(arguments);
   Preparation made = preparePictures(options, bytesOf(document, options, false));
   for (Picture& picture : made.pictures) {

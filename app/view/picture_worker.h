@@ -34,9 +34,9 @@ struct ViewRequest {
 };
 
 enum class FrameStage : std::uint8_t {
-  moving,  ///< reduced to what can be drawn in time
-  first,   ///< whole, one ray per pixel
-  full     ///< what render draws
+  moving,    ///< reduced to what can be drawn in time
+  refining,  ///< whole, with some of its rays
+  full       ///< what render draws
 };
 
 struct ViewFrame {

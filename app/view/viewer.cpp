@@ -94,6 +94,7 @@ void Viewer::run() {
     }
     submit();
     if (--redraws > 0 && dragging_) redraws = 0;
+    if (window_.answersNext()) redraws = kRedraws;
   }
 }
 

@@ -137,6 +137,7 @@ void Window::open(const std::string& title, ImageSize size) {
   glfwSetWindowUserPointer(window_, this);
   glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int modifiers) {
     Window& self = of(window);
+    self.keyPressed_ = true;
     if (action == GLFW_RELEASE || !self.onKey || ImGui::GetIO().WantTextInput) return;
     self.onKey(key, (modifiers & GLFW_MOD_CONTROL) != 0, (modifiers & GLFW_MOD_SHIFT) != 0);
   });
@@ -205,6 +206,10 @@ void Window::draw(const std::function<void()>& draw, bool seen) {
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   ImGui::NewFrame();
+  const ImGuiIO& io = ImGui::GetIO();
+  answersNext_ = std::exchange(keyPressed_, false) || io.MouseWheel != 0;
+  for (int button = 0; button < 3; ++button)
+    answersNext_ = answersNext_ || io.MouseClicked[button] || io.MouseReleased[button];
   draw();
   if (!seen) {
     ImGui::EndFrame();

@@ -53,6 +53,8 @@ class Window {
   /// One picture of the window: `draw` calls ImGui. It answers to input in any case, but the picture is only
   /// made where it is to be `seen`: without a GPU it costs as much as a picture of a molecule.
   void draw(const std::function<void()>& draw, bool seen);
+  /// Whether the last draw() met input whose answer only the next one shows.
+  bool answersNext() const { return answersNext_; }
   /// Window coordinates, and pixels for each of them.
   ImageSize size() const;
   double pixelsPerUnit() const;
@@ -71,6 +73,7 @@ class Window {
   GLFWwindow* window_ = nullptr;
   std::string api_, title_;
   double contentScale_ = 1;
+  bool answersNext_ = false, keyPressed_ = false;
 };
 
 }  // namespace meniscus
