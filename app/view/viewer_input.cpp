@@ -35,16 +35,6 @@ glm::dvec2 of(const ImVec2& v) {
   return {static_cast<double>(v.x), static_cast<double>(v.y)};
 }
 
-}  // namespace
-
-glm::dvec2 Viewer::cursor() const {
-  const glm::dvec2 mouse = of(ImGui::GetIO().MousePos);
-  const double scale = window_.pixelsPerUnit();
-  return {(mouse.x - area_.x) * scale, size_.height - (mouse.y - area_.y) * scale};
-}
-
-namespace {
-
 std::vector<PanelPlace> placesOf(const Document& document, ImageSize size) {
   const std::size_t panels = document.values("panel").size();
   if (panels < 2 || panels > kMostPanels) return {};
@@ -54,6 +44,12 @@ std::vector<PanelPlace> placesOf(const Document& document, ImageSize size) {
 }
 
 }  // namespace
+
+glm::dvec2 Viewer::cursor() const {
+  const glm::dvec2 mouse = of(ImGui::GetIO().MousePos);
+  const double scale = window_.pixelsPerUnit();
+  return {(mouse.x - area_.x) * scale, size_.height - (mouse.y - area_.y) * scale};
+}
 
 std::vector<Viewer::Part> Viewer::parts() const {
   std::vector<Part> parts;

@@ -18,7 +18,7 @@ class BadCommand : public CliTest {
 
 TEST_F(BadCommand, isNamedWithTheCommandsThereAre) {
   refused({}, {"render", "info", "doctor", "--help"});
-  refused({"rendr"}, {"'rendr'", "render, info, measure and doctor"});
+  refused({"rendr"}, {"'rendr'", "render, view, info, measure and doctor"});
   refused({"--frobnicate"}, {"--frobnicate"});
 }
 
@@ -38,7 +38,12 @@ TEST_F(BadCommand, namesAnUnknownOption) {
 }
 
 TEST_F(BadCommand, givesAnOptionAnUnknownValue) {
-  const std::array<std::array<const char*, 3>, 27> cases{{{"--representation", "ribbons", "licorice"},
+  const std::array<std::array<const char*, 3>, 32> cases{{{"--target", "1,2", "three coordinates"},
+                                                          {"--distance", "0", "Angstrom"},
+                                                          {"--light-direction", "0,0,0", "not all zero"},
+                                                          {"--measure", "//A/1", "two, three or four"},
+                                                          {"--panel", "marbles", "licorice"},
+                                                          {"--representation", "ribbons", "licorice"},
                                                           {"--color", "mauve", "rainbow"},
                                                           {"--carbons", "green", "chain"},
                                                           {"--radii", "tsai", "alvarez"},

@@ -172,6 +172,60 @@ TEST_F(RenderOption, selectDrawsAPart) {
   EXPECT_EQ(alphas["pictures"][0]["atoms"], 10);
 }
 
+TEST_F(RenderOption, hideLeavesAPartOut) {
+  const auto spheres = [&](const std::vector<std::string>& more) {
+    return stats(kProtein, more)["pictures"][0]["spheres"].get<int>();
+  };
+  const int all = spheres({}), part = spheres({"--select", "//A/1-10"});
+  EXPECT_EQ(spheres({"--hide", "//A/1-10"}), all - part);
+  EXPECT_EQ(spheres({"--hide", "//A/1-10", "--show", "//A/1-10=licorice", "--hide", "//A/5"}), all - part);
+  expectError(run({"render", molecule(kProtein), "-o", "x.png", "--hide", "//Q"}), ExitCode::badInput,
+              {"--hide '//Q'", "matches none"});
+  expectError(run({"render", molecule(kProtein), "-o", "x.png", "--hide", "/*"}), ExitCode::badInput,
+              {"--hide leaves nothing"});
+}
+
+TEST_F(RenderOption, targetDistanceAndNearMakeACamera) {
+  const std::vector<std::string> given{"--orient", "1,0,0,0", "--target", "30,30,15", "--distance", "80"};
+  const Picture picture = render(kProtein, given);
+  EXPECT_GT(picture.covered(), 0.05);
+  std::vector<std::string> farther = given, cut = given;
+  farther.back() = "160";
+  cut.insert(cut.end(), {"--near", "200"});
+  EXPECT_LT(render(kProtein, farther).covered(), 0.5 * picture.covered());
+  EXPECT_EQ(render(kProtein, cut).covered(), 0);
+}
+
+TEST_F(RenderOption, lightDirectionTurnsTheLight) {
+  const auto brightness = [&](const char* direction) {
+    double left = 0, right = 0;
+    const Picture picture = render("c60.pdb", {"--light-direction", direction});
+    for (int y = 0; y < picture.height; ++y)
+      for (int x = 0; x < picture.width; ++x)
+        (x < picture.width / 2 ? left : right) += static_cast<double>(picture.at(x, y)[0]);
+    return left - right;
+  };
+  EXPECT_GT(brightness("1,0,-0.2"), 10);
+  EXPECT_LT(brightness("-1,0,-0.2"), -10);
+}
+
+TEST_F(RenderOption, panelsAreThoseOptionsSeenByOneCamera) {
+  const std::vector<std::string> camera{"--size", "64x48",      "--orient", "1,0,0,0",      "--target",
+                                        "0,0,0",  "--distance", "30",       "--label-size", "0.1"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.end(), camera.begin(), camera.end());
+    return render("c60.pdb", more);
+  };
+  const Picture balls = with({"--representation", "ball_and_stick"}),
+                skin = with({"--representation", "surface"});
+  const Picture both = with({"--panel", "--representation ball_and_stick", "--panel",
+                             "--representation surface", "--divider", "0.5"});
+  for (int y = 0; y < both.height; ++y) {
+    for (int x = 0; x < 32; ++x) EXPECT_EQ(both.at(x, y), balls.at(x, y)) << x << " " << y;
+    for (int x = 34; x < 64; ++x) EXPECT_EQ(both.at(x, y), skin.at(x, y)) << x << " " << y;
+  }
+}
+
 TEST_F(RenderOption, watersAreLeftOutUnlessAlone) {
   const auto atoms = [this](std::vector<std::string> more) -> int {
     return stats(kProtein, more)["pictures"][0]["atoms"];
