@@ -279,9 +279,12 @@ std::string Viewer::nextName() const {
 std::vector<std::string> Viewer::argumentsFor(const std::string& output) {
   const Document& shown = *document();
   std::optional<int> model;
+  std::optional<Camera> seen = shown.camera;
+  // One camera suits all models; a model alone would get its own.
+  if (shown.oneByOne && !shown.isScene()) seen = camera();
   if (const Preparation* made = preparation(); made && shown.oneByOne && !shown.isScene())
     model = made->pictures[std::min(shown.shown, made->pictures.size() - 1)].place.model;
-  return renderArguments(shown, shown.camera, size_, output, model);
+  return renderArguments(shown, seen, size_, output, model);
 }
 
 void Viewer::copyCommand() {

@@ -105,6 +105,7 @@ class Viewer {
   std::vector<Part> parts() const;
   Part partAt(glm::dvec2 pixel) const;
   std::optional<double> dividerAt(glm::dvec2 pixel) const;
+  void play();
   void advanceModels();
   void submit();
   double secondsToWait() const;

@@ -204,6 +204,15 @@ void Viewer::resolvePick() {
   document()->pick({cidOf(shown, atom->atom), nameOf(shown, atom->atom), atom->position, !first});
 }
 
+// Models that lie over each other come one by one then.
+void Viewer::play() {
+  const Preparation* made = preparation();
+  const bool several = made && (made->modelCount > 1 || made->pictures.size() > 1);
+  playing = several;
+  if (several && !document()->isScene()) document()->oneByOne = true;
+  if (!several) say("there is only one model to be shown");
+}
+
 void Viewer::handleKey(int key, bool control, bool shift) {
   const auto turn = [&](double right, double up) {
     if (const auto now = camera()) {
@@ -279,7 +288,8 @@ void Viewer::handleKey(int key, bool control, bool shift) {
       reread();
       return;
     case GLFW_KEY_SPACE:
-      playing = !playing && preparation() && preparation()->pictures.size() > 1;
+      playing = !playing;
+      if (playing) play();
       return;
     case GLFW_KEY_LEFT:
       turn(-1, 0);

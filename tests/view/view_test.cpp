@@ -230,6 +230,31 @@ TEST_F(WindowTest, DividerIsDragged) {
   EXPECT_EQ(quit(), 0);
 }
 
+TEST_F(WindowTest, ModelsArePlayedAndSavedOneByOne) {
+  std::filesystem::copy(MENISCUS_TEST_DATA "/structures/models.pdb", folder_ / "models.pdb");
+  ASSERT_NO_FATAL_FAILURE(open({"models.pdb", "--size", "200x160", "--samples", "1"}));
+  ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
+  key("space");
+  // Somewhere in the film, until it is not the first model that is shown.
+  std::string command;
+  waitFor("another model", [&] {
+    key("ctrl+c");
+    command = clipboard();
+    return command.find("--model=") != std::string::npos && command.find("--model=1 ") == std::string::npos;
+  });
+  key("space");
+  ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
+  key("ctrl+s");
+  waitFor("a picture", [&] { return std::filesystem::exists(folder_ / "models.png"); });
+  std::filesystem::rename(folder_ / "models.png", folder_ / "saved.png");
+  key("ctrl+c");
+  command = clipboard();
+  const ProcessResult again = runCommand(command, folder_.path());
+  ASSERT_EQ(again.exitCode, 0) << command << again.err;
+  EXPECT_TRUE(readFile(folder_ / "models.png") == readFile(folder_ / "saved.png")) << command;
+  EXPECT_EQ(quit(), 0);
+}
+
 TEST_F(WindowTest, SceneIsDrawnFromWhereItIsSeen) {
   const std::string file = molecule("adrenaline.pdb");
   ASSERT_EQ(
