@@ -35,7 +35,7 @@ constexpr unsigned kTexture2d = 0x0DE1, kMagFilter = 0x2800, kMinFilter = 0x2801
                    kColorBuffer = 0x4000;
 constexpr int kLinear = 0x2601, kClampToEdge = 0x812F, kRgba8 = 0x8058;
 
-Gl gl;
+Gl windowGl;
 
 template <typename Function>
 void load(Function& function, const char* name) {
@@ -45,15 +45,15 @@ void load(Function& function, const char* name) {
 }
 
 void loadGl() {
-  load(gl.genTextures, "glGenTextures");
-  load(gl.deleteTextures, "glDeleteTextures");
-  load(gl.bindTexture, "glBindTexture");
-  load(gl.texParameteri, "glTexParameteri");
-  load(gl.texImage2D, "glTexImage2D");
-  load(gl.pixelStorei, "glPixelStorei");
-  load(gl.viewport, "glViewport");
-  load(gl.clearColor, "glClearColor");
-  load(gl.clear, "glClear");
+  load(windowGl.genTextures, "glGenTextures");
+  load(windowGl.deleteTextures, "glDeleteTextures");
+  load(windowGl.bindTexture, "glBindTexture");
+  load(windowGl.texParameteri, "glTexParameteri");
+  load(windowGl.texImage2D, "glTexImage2D");
+  load(windowGl.pixelStorei, "glPixelStorei");
+  load(windowGl.viewport, "glViewport");
+  load(windowGl.clearColor, "glClearColor");
+  load(windowGl.clear, "glClear");
 }
 
 std::string lastError() {
@@ -75,18 +75,18 @@ constexpr double kFontSize = 15;
 }  // namespace
 
 WindowTexture::~WindowTexture() {
-  if (name_ != 0) gl.deleteTextures(1, &name_);
+  if (name_ != 0) windowGl.deleteTextures(1, &name_);
 }
 
 void WindowTexture::set(ImageSize size, std::span<const std::byte> pixels) {
-  if (name_ == 0) gl.genTextures(1, &name_);
-  gl.bindTexture(kTexture2d, name_);
-  gl.texParameteri(kTexture2d, kMinFilter, kLinear);
-  gl.texParameteri(kTexture2d, kMagFilter, kLinear);
-  gl.texParameteri(kTexture2d, kWrapS, kClampToEdge);
-  gl.texParameteri(kTexture2d, kWrapT, kClampToEdge);
-  gl.pixelStorei(kUnpackAlignment, 4);
-  gl.texImage2D(kTexture2d, 0, kRgba8, size.width, size.height, 0, kRgba, kUnsignedByte, pixels.data());
+  if (name_ == 0) windowGl.genTextures(1, &name_);
+  windowGl.bindTexture(kTexture2d, name_);
+  windowGl.texParameteri(kTexture2d, kMinFilter, kLinear);
+  windowGl.texParameteri(kTexture2d, kMagFilter, kLinear);
+  windowGl.texParameteri(kTexture2d, kWrapS, kClampToEdge);
+  windowGl.texParameteri(kTexture2d, kWrapT, kClampToEdge);
+  windowGl.pixelStorei(kUnpackAlignment, 4);
+  windowGl.texImage2D(kTexture2d, 0, kRgba8, size.width, size.height, 0, kRgba, kUnsignedByte, pixels.data());
 }
 
 Window::Window(const std::string& title, ImageSize size) : title_(title) {
@@ -218,9 +218,9 @@ void Window::draw(const std::function<void()>& draw, bool seen) {
   ImGui::Render();
   int width = 0, height = 0;
   glfwGetFramebufferSize(window_, &width, &height);
-  gl.viewport(0, 0, width, height);
-  gl.clearColor(0.16f, 0.17f, 0.19f, 1);
-  gl.clear(kColorBuffer);
+  windowGl.viewport(0, 0, width, height);
+  windowGl.clearColor(0.16f, 0.17f, 0.19f, 1);
+  windowGl.clear(kColorBuffer);
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
   glfwSwapBuffers(window_);
 }
