@@ -28,7 +28,7 @@ double torsion(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
 
 }  // namespace
 
-double measure(std::span<const glm::dvec3> p) {
+double measuredValue(std::span<const glm::dvec3> p) {
   MENISCUS_CHECK(p.size() >= 2 && p.size() <= 4);
   if (p.size() == 2) return glm::length(p[1] - p[0]);
   if (p.size() == 3) return angleBetween(p[0] - p[1], p[2] - p[1]);
@@ -36,7 +36,7 @@ double measure(std::span<const glm::dvec3> p) {
 }
 
 std::string measureText(std::span<const glm::dvec3> points) {
-  const double value = measure(points);
+  const double value = measuredValue(points);
   if (std::isnan(value)) return "no angle";
   return points.size() == 2 ? fmt::format("{:.2f} Å", value) : fmt::format("{:.1f}°", value);
 }

@@ -13,7 +13,7 @@ namespace meniscus {
 /// about the axis from the second to the third [degrees, -180..180; IUPAC 1974: positive if, seen along the
 /// axis, the farther bond is clockwise of the nearer]. NaN where points that coincide or lie in one line
 /// leave an angle without meaning.
-double measure(std::span<const glm::dvec3> points);
+double measuredValue(std::span<const glm::dvec3> points);
 
 /// "3.82 Å" or "109.5°".
 std::string measureText(std::span<const glm::dvec3> points);

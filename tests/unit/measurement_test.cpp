@@ -14,17 +14,17 @@ namespace {
 
 TEST(Measure, KnownValues) {
   const glm::dvec3 o(0, 0, 0), x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
-  EXPECT_DOUBLE_EQ(measure(std::array{x, y}), std::sqrt(2.0));
-  EXPECT_DOUBLE_EQ(measure(std::array{x, o, y}), 90);
-  EXPECT_DOUBLE_EQ(measure(std::array{x, o, x}), 0);
-  EXPECT_DOUBLE_EQ(measure(std::array{x, o, -x}), 180);
+  EXPECT_DOUBLE_EQ(measuredValue(std::array{x, y}), std::sqrt(2.0));
+  EXPECT_DOUBLE_EQ(measuredValue(std::array{x, o, y}), 90);
+  EXPECT_DOUBLE_EQ(measuredValue(std::array{x, o, x}), 0);
+  EXPECT_DOUBLE_EQ(measuredValue(std::array{x, o, -x}), 180);
   // Seen along the axis from o to z, from x to y is counter-clockwise for one who looks at +z coming, that is
   // clockwise for one who looks along it.
-  EXPECT_DOUBLE_EQ(measure(std::array{x, o, z, z + y}), 90);
-  EXPECT_DOUBLE_EQ(measure(std::array{x, o, z, z - y}), -90);
-  EXPECT_DOUBLE_EQ(std::abs(measure(std::array{x, o, z, z - x})), 180);
-  EXPECT_TRUE(std::isnan(measure(std::array{o, o, x})));
-  EXPECT_TRUE(std::isnan(measure(std::array{o, z, z + z, x})));
+  EXPECT_DOUBLE_EQ(measuredValue(std::array{x, o, z, z + y}), 90);
+  EXPECT_DOUBLE_EQ(measuredValue(std::array{x, o, z, z - y}), -90);
+  EXPECT_DOUBLE_EQ(std::abs(measuredValue(std::array{x, o, z, z - x})), 180);
+  EXPECT_TRUE(std::isnan(measuredValue(std::array{o, o, x})));
+  EXPECT_TRUE(std::isnan(measuredValue(std::array{o, z, z + z, x})));
   EXPECT_EQ(measureText(std::array{x, y}), "1.41 Å");
   EXPECT_EQ(measureText(std::array{x, o, y}), "90.0°");
   EXPECT_EQ(measureText(std::array{o, o, x}), "no angle");
@@ -45,8 +45,8 @@ TEST(Measure, StaysWhenAllIsMovedAndTorsionsTurnInAMirror) {
       mirrored[k] = points[k] * glm::dvec3(1, 1, -1);
     }
     for (std::size_t n = 2; n <= 4; ++n)
-      EXPECT_NEAR(measure(std::span(moved).first(n)), measure(std::span(points).first(n)), 1e-8);
-    EXPECT_NEAR(measure(mirrored), -measure(points), 1e-9);
+      EXPECT_NEAR(measuredValue(std::span(moved).first(n)), measuredValue(std::span(points).first(n)), 1e-8);
+    EXPECT_NEAR(measuredValue(mirrored), -measuredValue(points), 1e-9);
   }
 }
 
