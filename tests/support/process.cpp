@@ -34,7 +34,9 @@ using Clock = std::chrono::steady_clock;
   _exit(127);
 }
 
-ProcessResult runOnce(const std::vector<std::string>& argv, const ProcessOptions& options) {
+}  // namespace
+
+ProcessResult runProcess(const std::vector<std::string>& argv, const ProcessOptions& options) {
   const TemporaryFolder capture;
   const std::string out = capture / "out", err = capture / "err";
   std::vector<char*> arguments;
@@ -64,24 +66,6 @@ ProcessResult runOnce(const std::vector<std::string>& argv, const ProcessOptions
   result.out = readFile(out);
   result.err = readFile(err);
   return result;
-}
-
-// The leak checker of GCC 12 itself crashes now and then while it stops the driver's threads, above all in
-// short runs on a busy machine. It has said nothing about leaks then; any verdict of its own is kept.
-bool leakCheckerCrashed(const ProcessResult& result) {
-  return result.err.find("LeakSanitizer has encountered a fatal error") != std::string::npos;
-}
-
-}  // namespace
-
-ProcessResult runProcess(const std::vector<std::string>& argv, const ProcessOptions& options) {
-  const ProcessResult result = runOnce(argv, options);
-  if (!leakCheckerCrashed(result)) return result;
-  const char* sanitizer = std::getenv("ASAN_OPTIONS");
-  ProcessOptions withoutLeaks = options;
-  withoutLeaks.environment.emplace_back("ASAN_OPTIONS",
-                                        std::string(sanitizer ? sanitizer : "") + ":detect_leaks=0");
-  return runOnce(argv, withoutLeaks);
 }
 
 TemporaryFolder::TemporaryFolder() {
