@@ -171,17 +171,19 @@ MetaballField emptyField(const SurfaceShape& shape) {
   return field;
 }
 
-// Dashes of a dashed line and the gaps between them [Å].
-constexpr double kDash = 0.3, kGap = 0.2;
+// Dashes of a dashed line and the gaps between them [Å], longer in lines of more dashes than anybody sees.
+constexpr double kDash = 0.3, kGap = 0.2, kMostDashes = 10000;
 
 void addDashes(const DashedLine& line, std::uint32_t id, Primitives& out) {
   const double length = glm::length(line.to - line.from);
   const glm::dvec3 step = length > 0 ? (line.to - line.from) / length : glm::dvec3(0.0);
-  const auto count = static_cast<std::size_t>(std::ceil(length / (kDash + kGap)));
+  const double longer = std::max(1.0, length / (kMostDashes * (kDash + kGap)));
+  const double dash = longer * kDash, period = longer * (kDash + kGap);
+  const auto count = static_cast<std::size_t>(std::ceil(length / period));
   for (std::size_t i = 0; i < count; ++i) {
-    const double from = static_cast<double>(i) * (kDash + kGap);
+    const double from = static_cast<double>(i) * period;
     const glm::vec3 a(line.from + from * step - out.origin);
-    const glm::vec3 b(line.from + std::min(from + kDash, length) * step - out.origin);
+    const glm::vec3 b(line.from + std::min(from + dash, length) * step - out.origin);
     if (a != b)
       out.cylinders.push_back({a, static_cast<float>(line.radius), b, line.color, line.color, id, id});
   }
@@ -315,6 +317,13 @@ BoundingSphere Primitives::bounds() const {
       radius = std::max(radius, static_cast<double>(glm::length(b.center - middle) + b.support));
   }
   return {origin + glm::dvec3(middle), radius};
+}
+
+void addFitSpheres(std::span<const SceneObject> objects, std::vector<FitSphere>& out) {
+  for (const SceneObject& object : objects) {
+    const std::vector<FitSphere> some = fitSpheres(object);
+    out.insert(out.end(), some.begin(), some.end());
+  }
 }
 
 std::vector<FitSphere> fitSpheres(const SceneObject& object, const std::vector<std::uint32_t>& atoms) {

@@ -6,6 +6,7 @@
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/camera_fit.h"
@@ -85,5 +86,8 @@ bool needsBonds(Representation representation);
 /// The spheres that a camera must fit to show the whole object: its atoms in every placement with the radius
 /// that is drawn; of `atoms` only (indices into the molecule, ascending) if that is not empty.
 std::vector<FitSphere> fitSpheres(const SceneObject& object, const std::vector<std::uint32_t>& atoms = {});
+
+/// Those of several objects, appended.
+void addFitSpheres(std::span<const SceneObject> objects, std::vector<FitSphere>& out);
 
 }  // namespace meniscus

@@ -53,6 +53,14 @@ glm::dvec3 world(const Primitives& p, glm::vec3 point) {
   return p.origin + glm::dvec3(point);
 }
 
+TEST(BuildPrimitives, MakesFewDashesOfTheLongestLine) {
+  Scene scene;
+  scene.dashes.push_back({{0, 0, 0}, {1e7, 0, 0}});
+  EXPECT_LE(buildPrimitives(scene).cylinders.size(), 10000u);
+  scene.dashes = {{{0, 0, 0}, {1, 0, 0}}};
+  EXPECT_EQ(buildPrimitives(scene).cylinders.size(), 2u);
+}
+
 TEST(BuildPrimitives, SpacefillIsOneVanDerWaalsSpherePerAtomAndNoBond) {
   const auto m = stringOfAtoms(7);
   const Primitives p = build({objectOf(m, Representation::spacefill)});
