@@ -164,6 +164,7 @@ struct Renderer::Impl {
   std::shared_ptr<const Primitives> primitives = std::make_shared<Primitives>();
   std::shared_ptr<const Primitives> withoutSurfaces;  // the same; made when it is wanted first
   RenderStats stats;
+  double forgottenCompileMs = 0;
 
   explicit Impl(const RendererOptions& o)
       : options(o), shaders(o.shaderDir), effects(chooseEffects(o.effectsOnProcessor)) {
@@ -662,6 +663,7 @@ SurfaceLayerImage Renderer::renderLayers(const View& view, const SurfaceSettings
 
 void Renderer::forgetStats() {
   impl_->stats = {};
+  impl_->forgottenCompileMs = impl_->shaders.compileMs();
   std::vector<SurfaceStats> forgotten;
   impl_->surfaces.takeStats(forgotten);
   impl_->tracedLight.takeStats(forgotten);
@@ -672,7 +674,7 @@ RenderStats Renderer::stats() const {
   impl_->tracedLight.takeStats(impl_->stats.surfaces);
   RenderStats stats = impl_->stats;
   stats.programs = impl_->shaders.compiled();
-  stats.compileMs = impl_->shaders.compileMs();
+  stats.compileMs = impl_->shaders.compileMs() - impl_->forgottenCompileMs;
   stats.buffers = impl_->quadrics.buffers();
   for (ResourceStats& buffer : impl_->triangles.buffers()) stats.buffers.push_back(std::move(buffer));
   for (ResourceStats& buffer : impl_->surfaces.buffers()) stats.buffers.push_back(std::move(buffer));
