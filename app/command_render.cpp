@@ -266,7 +266,8 @@ void RenderRun::drawAll(const Input& input, Prepared& prepared) {
   };
   for (std::size_t i = 0; i < count && !interrupted(); ++i) {
     Picture& picture = made.pictures[i / frames];
-    if (frames > 1 && !picture.primitives) picture.primitives = drawer_.primitivesOf(picture);
+    if (frames > 1 && picture.panels.empty() && !picture.primitives)
+      picture.primitives = drawer_.primitivesOf(picture);
     for (Picture& panel : picture.panels)
       if (frames > 1 && !panel.primitives) panel.primitives = drawer_.primitivesOf(panel);
     Picture frame = frames > 1 ? picture : std::move(picture);  // its molecules go once they are primitives

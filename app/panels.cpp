@@ -9,6 +9,7 @@
 
 #include "app/option_values.h"
 #include "app/render_options.h"
+#include "app/style.h"
 #include "core/error.h"
 
 namespace meniscus {
@@ -19,7 +20,22 @@ constexpr std::byte kLineGrey{0x80};   // seen on any background
 constexpr double kLabelMargin = 0.01;  // of the panel's height
 
 // What is the whole picture's and no panel's.
-constexpr std::array<std::string_view, 6> kShared{"size", "panel", "divider", "depth", "channels", "dpi"};
+constexpr std::array<std::string_view, 12> kShared{"size",     "panel",  "divider",  "depth",
+                                                   "channels", "dpi",    "orient",   "rotate",
+                                                   "focus",    "target", "distance", "near"};
+
+// The style's options in place of its name: those of the whole picture are no match for a panel's.
+std::vector<std::string> withStyleAlone(const std::vector<std::string>& arguments) {
+  std::vector<std::string> words = withStyle(arguments);
+  for (auto word = words.begin(); word != words.end();) {
+    const bool apart = *word == "--style" && word + 1 != words.end();
+    if (apart || word->starts_with("--style="))
+      word = words.erase(word, word + (apart ? 2 : 1));
+    else
+      ++word;
+  }
+  return words;
+}
 
 // `count` parts of a length with lines between them, as equal as whole pixels can be.
 std::pair<int, int> part(int length, int count, int index) {
@@ -50,12 +66,14 @@ PanelOptions parsePanel(std::string_view option, std::string_view value) {
     throwBadValue(option, value,
                   "a representation, or options as in 'skin: --representation surface --opacity 0.5'");
   try {
+    panel.arguments = withStyleAlone(panel.arguments);
     const RenderOptions parsed = parseSettings(panel.arguments);
-    const bool files = !parsed.files.empty() || !parsed.scenes.empty() || !parsed.output.empty();
+    if (!parsed.files.empty()) throw UsageError("files are the whole picture's");
     for (const auto& [name, given] : parsed.given)
       if (std::find(kShared.begin(), kShared.end(), name) != kShared.end())
         throw UsageError(fmt::format("--{} is the whole picture's", name));
-    if (files) throw UsageError("files are the whole picture's");
+    if (!parsed.ofTheRun.empty())
+      throw UsageError(fmt::format("--{} is the whole picture's", parsed.ofTheRun.front()));
   } catch (const UsageError& error) {
     throw UsageError(fmt::format("{}: '{}': {}", option, value, error.what()));
   }

@@ -52,6 +52,30 @@ PictureReport reportOn(const Picture& picture, const Primitives& primitives) {
   return report;
 }
 
+// What another panel draws of the same atoms.
+void addPrimitives(const PictureReport& panel, PictureReport& report) {
+  report.spheres += panel.spheres;
+  report.cylinders += panel.cylinders;
+  report.ellipsoids += panel.ellipsoids;
+  report.triangles += panel.triangles;
+  report.metaballs += panel.metaballs;
+}
+
+std::size_t bytesOf(ImageSize size) {
+  return std::size_t{4} * static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height);
+}
+
+// Panels are put together in memory, unlike other pictures, which are written row by row.
+void requireMemoryForPanels(const Picture& picture) {
+  const std::size_t available = physicalMemoryBytes(), wanted = 2 * bytesOf(picture.options.size);
+  if (available > 0 && wanted > available)
+    throw InputError(
+        fmt::format("cannot write '{}': panels of {}x{} pixels take {:.0f} GB of memory, more than there is; "
+                    "give a smaller --size",
+                    picture.output, picture.options.size.width, picture.options.size.height,
+                    static_cast<double>(wanted) / 1e9));
+}
+
 ImageFileOptions imageOptionsFor(const Picture& picture) {
   constexpr std::size_t kExactInFloat = std::size_t{1} << 24;
   const RenderOptions& options = picture.options;
@@ -179,6 +203,7 @@ PictureReport PictureDrawer::render(Picture& picture, RowSink& sink, const Pixel
 PictureReport PictureDrawer::renderPanels(Picture& picture, RowSink& sink, const std::string& label) {
   const RenderOptions& options = picture.options;
   const std::vector<PanelPlace> places = placePanels(picture.panels.size(), options.size, options.divider);
+  requireMemoryForPanels(picture);
   PanelCanvas canvas(options.size);
   PictureReport report;
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -186,6 +211,7 @@ PictureReport PictureDrawer::renderPanels(Picture& picture, RowSink& sink, const
     panel.options.size = places[i].picture;
     panel.scene.camera = seenBy(picture.scene.camera, panel.scene.camera);
     std::vector<std::byte> bytes;
+    bytes.reserve(bytesOf(places[i].picture));
     BufferSink buffer(bytes);
     PictureReport own = render(panel, buffer, {PixelFormat::rgba8}, label);
     canvas.paste(places[i], bytes);
@@ -193,7 +219,10 @@ PictureReport PictureDrawer::renderPanels(Picture& picture, RowSink& sink, const
     const double letters = std::max(0.01 * options.labelSize * options.size.height, 1.0);
     for (const LabelSprite& sprite : drawLabels({{text, {}, 0}}, letters, options.labelFont))
       canvas.write(places[i], sprite, options.labelColors);
-    if (i == 0) report = std::move(own);
+    if (i == 0)
+      report = std::move(own);
+    else
+      addPrimitives(own, report);
   }
   sink.writeRows(canvas.bytes());
   report.output = picture.output;

@@ -23,7 +23,7 @@ namespace meniscus {
 namespace {
 
 constexpr const char* kDescription =
-    "Draws structure files (PDB, mmCIF, plain or .gz) as pictures. Needs no display and no GPU.\n";
+    "Draws structure files (PDB, mmCIF, plain or .gz, BinaryCIF) as pictures. Needs no display and no GPU.\n";
 
 constexpr const char* kExamples =
     "  meniscus render 1crn.pdb -o crambin.png\n"
@@ -119,7 +119,7 @@ void addPanelOptions(CLI::App& app, RenderOptions& o) {
 
 // Methods and their parameters, a line each.
 std::string surfaceMethodHelp() {
-  std::string help = "How it is computed; all draw the same surface [auto]";
+  std::string help = "How it is computed; all but mesh draw the exact surface [auto]";
   for (const SurfaceMethodInfo& method : surfaceMethods()) {
     help += fmt::format("\n{}: {}", method.name, method.summary);
     for (const SurfaceParameter& p : method.parameters)
@@ -536,8 +536,11 @@ void requireConsistent(const CLI::App& app, RenderOptions& o) {
     throw UsageError("--shader-dir: '" + o.shaderDir.string() + "' is not a folder; give a copy of shaders/");
 }
 
+bool isGiven(const CLI::Option& option) {
+  return option.count() > 0 && !option.get_lnames().empty() && option.results().back() != "false";
+}
+
 bool isForThePicture(const CLI::Option& option) {
-  if (option.count() == 0 || option.get_lnames().empty() || option.results().back() == "false") return false;
   return std::find(kNotForThePicture.begin(), kNotForThePicture.end(), option.get_lnames().front()) ==
          kNotForThePicture.end();
 }
@@ -545,7 +548,7 @@ bool isForThePicture(const CLI::Option& option) {
 std::vector<std::pair<std::string, std::string>> givenOptions(const CLI::App& app) {
   std::vector<std::pair<std::string, std::string>> given;
   for (const CLI::Option* option : app.get_options({})) {
-    if (!isForThePicture(*option)) continue;
+    if (!isGiven(*option) || !isForThePicture(*option)) continue;
     const std::string& name = option->get_lnames().front();
     if (option->get_items_expected_max() == 0) {
       given.emplace_back(name, "");
@@ -615,8 +618,12 @@ RenderOptions parseSettings(const std::vector<std::string>& arguments) {
   RenderOptions options;
   const std::unique_ptr<CLI::App> app = makeCommandLine("render", kDescription, kExamples);
   addAllOptions(*app, options);
-  parseCommandLine(*app, withStyle(arguments));
+  if (!parseCommandLine(*app, withStyle(arguments)))
+    throw UsageError("--help: is no setting");  // it has been shown
   options.given = givenOptions(*app);
+  for (const CLI::Option* option : app->get_options({}))
+    if (isGiven(*option) && !isForThePicture(*option))
+      options.ofTheRun.push_back(option->get_lnames().front());
   return options;
 }
 

@@ -97,6 +97,8 @@ struct RenderOptions {
   std::string pictureOptions;
   /// The same by name (without "--") and value; a flag's value is empty.
   std::vector<std::pair<std::string, std::string>> given;
+  /// Names of the options given that say nothing of what a picture looks like; of parseSettings() only.
+  std::vector<std::string> ofTheRun;
 };
 
 /// A word of a command line, quoted for a shell if it must be.

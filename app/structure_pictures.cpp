@@ -11,6 +11,7 @@
 
 #include "app/film.h"
 #include "app/measurement.h"
+#include "app/option_camera.h"
 #include "app/output_name.h"
 #include "app/run_report.h"
 #include "app/scene/mvs_camera.h"
@@ -243,10 +244,7 @@ Camera StructurePictures::cameraFor(const std::vector<Objects>& models) const {
         fmt::format("'{}': --focus '{}' matches none of the atoms that are drawn; see meniscus info", file_,
                     options_.focus));
 
-  Camera camera;
-  camera.projection = options_.orthographic ? Projection::orthographic : Projection::perspective;
-  camera.fovY = glm::radians(options_.fovYDeg);
-  camera.zoom = options_.zoom;
+  Camera camera = lensOf(options_);
   switch (options_.orientation.kind) {
     case Orientation::Kind::principal:
       camera.orientation = principalAxes(first, options_.size.height > options_.size.width);
@@ -259,18 +257,16 @@ Camera StructurePictures::cameraFor(const std::vector<Objects>& models) const {
       break;
   }
   camera.orientation = rotatedBy(camera.orientation, options_.rotationDeg);
-  camera = fitted(camera, options_.size, spheres);
-  if (options_.target) camera.target = *options_.target;
-  if (options_.distance) camera.distance = *options_.distance;
-  camera.nearest = options_.nearest;
-  return camera;
+  return withViewpoint(fitted(camera, options_.size, spheres), options_);
 }
 
 // Options of a panel: those of all, and then its own.
 RenderOptions panelOptions(const RenderOptions& all, const PanelOptions& panel, ImageSize size) {
   GivenOptions shared = all.given;
   std::erase_if(shared, [](const auto& option) {
-    return option.first == "panel" || option.first == "divider" || option.first == "size";
+    // What a style stands for is there beside it, and gives way to what a panel says.
+    return option.first == "panel" || option.first == "divider" || option.first == "size" ||
+           option.first == "style";
   });
   std::vector<std::string> arguments = asArguments(shared);
   arguments.insert(arguments.end(), panel.arguments.begin(), panel.arguments.end());
@@ -287,18 +283,9 @@ Camera cameraOfPanels(const Preparation& all, const RenderOptions& options, Imag
   Camera camera = all.pictures.front().scene.camera;
   if (!options.focus.empty()) return camera;
   std::vector<FitSphere> spheres;
-  for (const Picture& picture : all.pictures) {
-    for (const Picture& panel : picture.panels) {
-      for (const SceneObject& object : panel.scene.objects) {
-        const std::vector<FitSphere> some = fitSpheres(object);
-        spheres.insert(spheres.end(), some.begin(), some.end());
-      }
-    }
-  }
-  camera = fitted(camera, size, spheres);
-  if (options.target) camera.target = *options.target;
-  if (options.distance) camera.distance = *options.distance;
-  return camera;
+  for (const Picture& picture : all.pictures)
+    for (const Picture& panel : picture.panels) addFitSpheres(panel.scene.objects, spheres);
+  return withViewpoint(fitted(camera, size, spheres), options);
 }
 
 Preparation picturesWithPanels(const std::string& file, const std::string& bytes,
@@ -313,6 +300,9 @@ Preparation picturesWithPanels(const std::string& file, const std::string& bytes
     } else {
       all.parseSeconds += made.parseSeconds;
       all.bondsSeconds += made.bondsSeconds;
+      for (std::string& note : made.notes)
+        if (std::find(all.notes.begin(), all.notes.end(), note) == all.notes.end())
+          all.notes.push_back(std::move(note));
     }
     if (made.pictures.size() != all.pictures.size())
       throw InputError(

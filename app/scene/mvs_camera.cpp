@@ -7,6 +7,7 @@
 #include <glm/matrix.hpp>
 #include <glm/trigonometric.hpp>
 
+#include "app/option_camera.h"
 #include "app/scene/settings.h"
 
 namespace meniscus {
@@ -23,14 +24,6 @@ std::optional<glm::dquat> orientationOf(const glm::dvec3& direction, const glm::
   const glm::dvec3 right = glm::normalize(across), back = -direction / length;
   const glm::dmat3 axes(right, glm::cross(back, right), back);
   return glm::normalize(glm::quat_cast(glm::transpose(axes)));
-}
-
-Camera plainCamera(const RenderOptions& options) {
-  Camera camera;
-  camera.projection = options.orthographic ? Projection::orthographic : Projection::perspective;
-  camera.fovY = glm::radians(options.fovYDeg);
-  camera.zoom = options.zoom;
-  return camera;
 }
 
 /// The eye's distance at which a sphere of this radius fills the picture's height.
@@ -76,7 +69,10 @@ void MvsCamera::readCamera(const MvsNode& node, std::vector<std::string>& unsupp
   camera.target = exact->at("target").vector();
   camera.distance = exact->at("distance").number();
   if (!(camera.distance > 0)) exact->at("distance").fail("must be positive");
-  if (const auto nearest = exact->find("near")) camera.nearest = nearest->number();
+  if (const auto nearest = exact->find("near")) {
+    camera.nearest = nearest->number();
+    if (!(*camera.nearest >= 0)) nearest->fail("must not be negative");
+  }
   exact_ = camera;
 }
 
@@ -111,14 +107,11 @@ Camera MvsCamera::camera(const RenderOptions& options, const std::vector<FitSphe
     camera.orientation = lookDownAxis(options.orientation.axis);
   if (options.orientation.kind == Orientation::Kind::quaternion)
     camera.orientation = options.orientation.quaternion;
-  if (options.target) camera.target = *options.target;
-  if (options.distance) camera.distance = *options.distance;
-  if (options.nearest) camera.nearest = options.nearest;
-  return camera;
+  return withViewpoint(camera, options);
 }
 
 Camera MvsCamera::ownCamera(const RenderOptions& options, const std::vector<FitSphere>& all) const {
-  Camera camera = plainCamera(options);
+  Camera camera = lensOf(options);
   if (exact_) {
     camera.orientation = exact_->orientation;
     camera.target = exact_->target;

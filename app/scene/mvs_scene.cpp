@@ -103,10 +103,7 @@ Preparation StateReader::read() {
         fmt::format("{}: draws nothing{}", state_.root.place().path(),
                     made_.unsupported.empty() ? "" : " that is supported; " + made_.unsupported[0]));
   std::vector<FitSphere> all;
-  for (const SceneObject& object : picture_.scene.objects) {
-    const std::vector<FitSphere> some = fitSpheres(object);
-    all.insert(all.end(), some.begin(), some.end());
-  }
+  addFitSpheres(picture_.scene.objects, all);
   for (const MvsNode* node : wholeFocus_) camera_.readFocus(*node, all, made_.unsupported);
   picture_.scene.camera = camera_.camera(options, all);
   // What is set for the picture, here or on the command line, has its way.

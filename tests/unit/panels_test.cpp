@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "app/render_options.h"
 #include "core/error.h"
 
@@ -65,11 +67,17 @@ TEST(ParsePanel, TakesRepresentationsLabelsAndOptions) {
   EXPECT_EQ(labelled.label, "my skin");
   EXPECT_EQ(labelled.arguments.size(), 4u);
   EXPECT_EQ(parsePanel("--panel", "--color chain").label, "");
+  // A panel's style must not give way to what all panels share, as a style does to all that stands beside it.
+  const std::vector<std::string> styled = parsePanel("--panel", "--style soft --samples 4").arguments;
+  EXPECT_EQ(std::count(styled.begin(), styled.end(), "--style"), 0);
+  EXPECT_EQ(std::count(styled.begin(), styled.end(), "--shadows"), 1);
+  EXPECT_EQ(styled.back(), "4");
 }
 
 TEST(ParsePanel, NamesWhatIsWrong) {
   for (const char* bad : {"", "x: ", "nonsense", "--nonsense 1", "--size 3x3", "--panel surface", "-o a.png",
-                          "a.pdb b.pdb", "--opacity 7"}) {
+                          "a.pdb b.pdb", "--opacity 7", "--export a.ply", "--turntable 5", "--focus (HEM)",
+                          "--distance 50", "--style glossy"}) {
     try {
       parsePanel("--panel", bad);
       ADD_FAILURE() << bad;
