@@ -18,7 +18,8 @@
 namespace meniscus {
 namespace {
 
-constexpr const char* kInfoDescription = "Says what a structure file (PDB, mmCIF, plain or .gz) holds.\n";
+constexpr const char* kInfoDescription =
+    "Says what a structure file (PDB, mmCIF, plain or .gz, BinaryCIF) holds.\n";
 
 constexpr const char* kInfoExamples =
     "  meniscus info 1crn.pdb\n"

@@ -12,7 +12,7 @@
 namespace meniscus {
 namespace {
 
-constexpr std::string_view kSupported = "PDB and mmCIF are read, plain or gzipped";
+constexpr std::string_view kSupported = "PDB and mmCIF are read, plain or gzipped, and BinaryCIF";
 
 [[noreturn]] void refuse(std::string_view what) {
   throw InputError(fmt::format("{}: {}", what, kSupported));
