@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "tests/support/paths.h"
+
 namespace meniscus::test {
 
 std::array<float, 4> Picture::at(int x, int y) const {
@@ -41,7 +43,7 @@ Picture readPicture(const std::filesystem::path& path) {
 }
 
 ProcessResult CliTest::run(const std::vector<std::string>& arguments, const Environment& environment) const {
-  std::vector<std::string> argv{MENISCUS_EXECUTABLE};
+  std::vector<std::string> argv{program()};
   argv.insert(argv.end(), arguments.begin(), arguments.end());
   ProcessOptions options;
   options.folder = folder_.path();
@@ -67,7 +69,7 @@ nlohmann::json CliTest::stats(const std::string& input, std::vector<std::string>
 }
 
 std::string molecule(const std::string& name) {
-  return std::string(MENISCUS_MOLECULES) + "/" + name;
+  return projectFile("molecules/" + name);
 }
 
 void expectError(const ProcessResult& result, ExitCode code, const std::vector<std::string>& parts) {

@@ -5,6 +5,7 @@
 #include "app/measure/stability.h"
 #include "core/generated_scenes.h"
 #include "tests/cli/cli_test.h"
+#include "tests/support/paths.h"
 
 namespace meniscus::test {
 namespace {
@@ -33,7 +34,7 @@ TEST_F(MeasureStability, noCellIsEmptyAndNoneGetsWorse) {
       << "its time limits are those of the program without sanitizers; the tests of each method draw "
          "its extremes with them";
 #endif
-  const std::filesystem::path data = MENISCUS_TEST_DATA;
+  const std::filesystem::path data = projectFile("tests/data");
   const ProcessResult result = run({"measure", data / "stability_sweep.json", "-o", "out", "-q"});
   expectSuccess(result);
   const auto now = nlohmann::json::parse(readFile(folder_ / "out/stability.json")),

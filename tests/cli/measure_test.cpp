@@ -21,6 +21,7 @@
 #include "app/measure/table.h"
 #include "render/surface_method.h"
 #include "tests/cli/cli_test.h"
+#include "tests/support/paths.h"
 
 namespace meniscus::test {
 namespace {
@@ -201,7 +202,7 @@ TEST_F(Measure, aSweepYieldsTablesPicturesAReportAndErrorsThatAreRight) {
 
 TEST_F(Measure, interruptedAndRunAgainItEndsWithTheSamePointsOnce) {
   writeFile(folder_ / "sweep.json", kSweep);
-  const std::vector<std::string> command = {MENISCUS_EXECUTABLE, "measure", "sweep.json", "-o", "out", "-q"};
+  const std::vector<std::string> command = {program(), "measure", "sweep.json", "-o", "out", "-q"};
   ProcessOptions options;
   options.folder = folder_.path();
   int interrupted = 0;
@@ -220,7 +221,7 @@ TEST_F(Measure, interruptedAndRunAgainItEndsWithTheSamePointsOnce) {
   expectSuccess(runProcess(command, options));
   std::multiset<Row> planned, measured;
   for (const measure::PlannedGroup& group :
-       measure::planOf(measure::parseSweep(kSweep, "sweep", MENISCUS_MOLECULES)))
+       measure::planOf(measure::parseSweep(kSweep, "sweep", projectFile("molecules"))))
     for (const measure::PlannedPoint& point : group.points) planned.insert(measure::keyOf(group, point));
   const Table points(table);
   for (std::size_t i = 0; i < points.size(); ++i) measured.insert(keyAt(points, i));

@@ -3,6 +3,7 @@
 #include <csignal>
 
 #include "tests/cli/cli_test.h"
+#include "tests/support/paths.h"
 
 namespace meniscus::test {
 namespace {
@@ -81,8 +82,8 @@ TEST_F(RenderFiles, aSignalLeavesNothingBehind) {
     options.folder = folder_.path();
     options.signal = signal;
     options.signalAfter = std::chrono::milliseconds(1500);
-    const ProcessResult result = runProcess({MENISCUS_EXECUTABLE, "render", molecule("2hhb.pdb.gz"), "-q",
-                                             "-o", "out.png", "--size", "8000x8000", "--samples", "256"},
+    const ProcessResult result = runProcess({program(), "render", molecule("2hhb.pdb.gz"), "-q", "-o",
+                                             "out.png", "--size", "8000x8000", "--samples", "256"},
                                             options);
     EXPECT_EQ(result.exitCode, -signal);
     EXPECT_EQ(folder_.names(), Names{});

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "tests/cli/cli_test.h"
+#include "tests/support/paths.h"
 
 namespace meniscus::test {
 namespace {
@@ -288,7 +289,7 @@ TEST_F(RenderOption, backendChoosesTheWayToOpenGl) {
 }
 
 TEST_F(RenderOption, shaderDirReplacesTheShaders) {
-  EXPECT_EQ(render(kProtein, {"--shader-dir", MENISCUS_SHADERS}).pixels, render(kProtein).pixels);
+  EXPECT_EQ(render(kProtein, {"--shader-dir", projectFile("shaders")}).pixels, render(kProtein).pixels);
 }
 
 TEST_F(RenderOption, statsHoldWhatWasDoneAndTheCost) {

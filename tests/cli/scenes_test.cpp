@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "tests/cli/cli_test.h"
+#include "tests/support/paths.h"
 
 namespace meniscus::test {
 namespace {
@@ -250,7 +251,7 @@ TEST_F(Scenes, anInterruptFinishesThePictureAndTheRestIsResumed) {
   options.signal = SIGINT;
   options.signalAfter = std::chrono::milliseconds(700);
   Words argv = command;
-  argv.insert(argv.begin(), MENISCUS_EXECUTABLE);
+  argv.insert(argv.begin(), program());
   const ProcessResult result = runProcess(argv, options);
   const std::size_t done = std::filesystem::exists(folder_ / "m.jsonl") ? manifest("m.jsonl").size() : 0;
   if (result.exitCode != 0) {  // a fast machine may have been done before
@@ -376,7 +377,7 @@ TEST_F(Scenes, aFilmIsEveryFrameInFfmpegsHands) {
 TEST_F(Scenes, theExamplesOfTheDocumentationWork) {
   for (const char* name : {"1ubq.pdb", "1cbs.cif.gz", "133d.pdb"})
     std::filesystem::copy_file(molecule(name), folder_ / name);
-  std::istringstream document(readFile(std::string(MENISCUS_SHADERS) + "/../docs/scene.md"));
+  std::istringstream document(readFile(projectFile("docs/scene.md")));
   std::string block, name, line, kind;
   std::size_t files = 0, commands = 0;
   while (std::getline(document, line)) {
@@ -395,8 +396,7 @@ TEST_F(Scenes, theExamplesOfTheDocumentationWork) {
         if (command.starts_with("meniscus render ")) {
           // A scene that was saved knows its size; options beside it would be recorded in the picture.
           const bool again = command.find("again") != std::string::npos;
-          command = std::string(MENISCUS_EXECUTABLE) + command.substr(8) +
-                    (again ? " -q" : " -q --size 60x45 --samples 1");
+          command = program() + command.substr(8) + (again ? " -q" : " -q --size 60x45 --samples 1");
         } else {
           ASSERT_TRUE(command.starts_with("cmp ")) << command;
         }

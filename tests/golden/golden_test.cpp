@@ -10,6 +10,7 @@
 #include "render/gl/context.h"
 #include "render/renderer.h"
 #include "tests/support/image_compare.h"
+#include "tests/support/paths.h"
 #include "tests/support/scenes.h"
 
 namespace meniscus {
@@ -55,7 +56,7 @@ std::vector<std::byte> draw(const Case& c) {
   StructureOptions options;
   options.altlocs = Altlocs::first;
   options.waters = Waters::off;
-  StructureFile file = readStructure(std::filesystem::path(MENISCUS_MOLECULES) / c.file, options, logger);
+  StructureFile file = readStructure(test::projectFile(std::string("molecules/") + c.file), options, logger);
   auto molecule = std::make_shared<Molecule>(std::move(file.models.front()));
   if (needsBonds(c.representation)) addMissingBonds(*molecule, logger);
   Scene scene;
@@ -84,7 +85,7 @@ TEST_P(Golden, MatchesTheStoredImage) {
   const auto context = Context::create(Backend::automatic);
   test::expectMatchesStored(
       draw(GetParam()), kSize,
-      std::filesystem::path(MENISCUS_GOLDEN_IMAGES) / (std::string(GetParam().name) + ".png"));
+      test::projectFile("tests/golden/images/" + std::string(GetParam().name) + ".png"));
 }
 
 TEST_P(Golden, IsTheSameOnEglAndOsmesa) {

@@ -14,6 +14,7 @@
 #include "core/reference_tracer.h"
 #include "io/structure_reader.h"
 #include "tests/support/exact_field.h"
+#include "tests/support/paths.h"
 #include "tests/support/process.h"
 
 namespace meniscus {
@@ -126,7 +127,7 @@ TEST_P(PovrayBlob, OfUbiquitin) {
   StructureOptions options;
   options.altlocs = Altlocs::first;
   options.waters = Waters::off;
-  StructureFile file = readStructure(std::filesystem::path(MENISCUS_MOLECULES) / "1ubq.pdb", options, logger);
+  StructureFile file = readStructure(test::projectFile("molecules/1ubq.pdb"), options, logger);
   const auto molecule = std::make_shared<Molecule>(std::move(file.models.front()));
   Scene scene;
   SceneObject object;

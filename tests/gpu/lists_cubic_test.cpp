@@ -9,6 +9,7 @@
 
 #include "tests/gpu/surface_judge.h"
 #include "tests/support/exact_rays.h"
+#include "tests/support/paths.h"
 
 namespace meniscus {
 namespace {
@@ -111,7 +112,7 @@ TEST_F(ListsCubic, PiecesAreTheCubics) {
 
 // Against the kernel itself; docs/measured/lists.md has the figures.
 TEST_F(ListsCubic, AreFartherFromTheTruthThanExactPieces) {
-  const test::SurfaceScene scene = test::moleculeScene(MENISCUS_MOLECULES "/1ubq.pdb");
+  const test::SurfaceScene scene = test::moleculeScene(test::projectFile("molecules/1ubq.pdb"));
   const View view = viewOf(scene, {160, 120});
   const HitErrors cubic = judge(scene, view, cubics(), "cubic");
   EXPECT_LT(cubic.relativeRms, 0.01);

@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "render/gl/objects.h"
 #include "render/shader_library.h"
+#include "tests/support/paths.h"
 
 namespace meniscus::test {
 
@@ -99,8 +100,9 @@ double pairAt(const f64::Cell& c, std::size_t i) {
 }  // namespace
 
 std::string sharedCallsText() {
-  std::ifstream in(MENISCUS_SHARED_MATH_CALLS, std::ios::binary);
-  if (!in) throw InputError(std::string(MENISCUS_SHARED_MATH_CALLS) + ": cannot be read");
+  const std::string name = projectFile("tests/gpu/shared_math_calls.glsl");
+  std::ifstream in(name, std::ios::binary);
+  if (!in) throw InputError(name + ": cannot be read");
   return {std::istreambuf_iterator<char>(in), {}};
 }
 

@@ -4,6 +4,7 @@
 
 #include "render/surface_method.h"
 #include "tests/gpu/surface_judge.h"
+#include "tests/support/paths.h"
 
 namespace meniscus {
 namespace {
@@ -22,7 +23,7 @@ TEST_F(SurfaceTiles, RandomBalls) {
 }
 
 TEST_F(SurfaceTiles, AMolecule) {
-  const test::SurfaceScene scene = test::moleculeScene(MENISCUS_MOLECULES "/2hhb.pdb.gz");
+  const test::SurfaceScene scene = test::moleculeScene(test::projectFile("molecules/2hhb.pdb.gz"));
   expectExact(judge(scene, viewOf(scene, {96, 72}), kTiles));
 }
 

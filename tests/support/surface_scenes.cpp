@@ -7,6 +7,7 @@
 #include "core/assembly.h"
 #include "io/structure_reader.h"
 #include "tests/support/exact_field.h"
+#include "tests/support/paths.h"
 #include "tests/support/random.h"
 
 namespace meniscus::test {
@@ -54,7 +55,7 @@ SurfaceScene moleculeScene(const std::filesystem::path& file) {
 
 std::vector<std::filesystem::path> moleculeFiles() {
   std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(MENISCUS_MOLECULES))
+  for (const auto& entry : std::filesystem::directory_iterator(projectFile("molecules")))
     if (entry.path().extension() != ".md") files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   return files;

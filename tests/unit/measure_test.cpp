@@ -15,6 +15,7 @@
 #include "core/error.h"
 #include "core/generated_scenes.h"
 #include "render/surface_method.h"
+#include "tests/support/paths.h"
 #include "tests/support/process.h"
 
 namespace meniscus::measure {
@@ -25,7 +26,7 @@ using test::TemporaryFolder;
 using test::writeFile;
 
 Sweep parsed(const std::string& text) {
-  return parseSweep(text, "sweep", MENISCUS_MOLECULES);
+  return parseSweep(text, "sweep", test::projectFile("molecules"));
 }
 
 // What is refused, and the key that is named.

@@ -13,6 +13,7 @@
 
 #include "core/bonds.h"
 #include "core/structure_counts.h"
+#include "tests/support/paths.h"
 #include "tests/unit/structure_files.h"
 
 namespace meniscus {
@@ -67,7 +68,7 @@ Tally tally(const std::string& listing) {
 
 std::vector<std::string> moleculeFiles() {
   std::vector<std::string> files;
-  for (const auto& entry : std::filesystem::directory_iterator(MENISCUS_MOLECULES)) {
+  for (const auto& entry : std::filesystem::directory_iterator(test::projectFile("molecules"))) {
     if (entry.path().extension() != ".md") files.push_back(entry.path().filename().string());
   }
   std::sort(files.begin(), files.end());
@@ -77,7 +78,7 @@ std::vector<std::string> moleculeFiles() {
 class MoleculeFile : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(MoleculeFile, holdsWhatGemmiCounts) {
-  const std::filesystem::path path = std::filesystem::path(MENISCUS_MOLECULES) / GetParam();
+  const std::filesystem::path path = test::projectFile("molecules/" + GetParam());
   const test::Read read = test::readFile(path);
   const StructureCounts counts = countStructure(read.molecule());
   // gemmi refuses entry ids and line numbers in columns 73-80 (2hhb): it gets PDB text without them. Its
@@ -95,7 +96,7 @@ TEST_P(MoleculeFile, holdsWhatGemmiCounts) {
 }
 
 TEST_P(MoleculeFile, isConsistent) {
-  test::Read read = test::readFile(std::filesystem::path(MENISCUS_MOLECULES) / GetParam());
+  test::Read read = test::readFile(test::projectFile("molecules/" + GetParam()));
   Molecule& m = read.file.models[0];
   addMissingBonds(m, read.logger);
   std::uint32_t atom = 0;
@@ -131,7 +132,7 @@ std::string testName(const ::testing::TestParamInfo<std::string>& info) {
 INSTANTIATE_TEST_SUITE_P(All, MoleculeFile, ::testing::ValuesIn(moleculeFiles()), testName);
 
 TEST(MoleculeFiles, pdbAndMmcifOfOneEntryAgree) {
-  const std::filesystem::path folder = MENISCUS_MOLECULES;
+  const std::filesystem::path folder = test::projectFile("molecules");
   const Molecule a = test::readFile(folder / "1a8o.pdb.gz").molecule();
   const Molecule b = test::readFile(folder / "1a8o.cif.gz").molecule();
   EXPECT_EQ(a.positions, b.positions);

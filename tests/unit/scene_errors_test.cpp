@@ -5,6 +5,7 @@
 #include "app/option_values.h"
 #include "app/scene/archive.h"
 #include "app/scene/settings.h"
+#include "tests/support/paths.h"
 #include "tests/unit/scene_files.h"
 
 namespace meniscus::test {
@@ -159,8 +160,7 @@ TEST_F(SceneErrors, archivesHoldTheirFilesAndNothingElse) {
 
 // The schema says what the program takes: the same keys, and the same bounds.
 TEST(SceneSchema, isWhatIsValidated) {
-  const nlohmann::json schema =
-      nlohmann::json::parse(readFile(std::string(MENISCUS_TEST_DATA) + "/../../docs/meniscus.schema.json"));
+  const nlohmann::json schema = nlohmann::json::parse(readFile(projectFile("docs/meniscus.schema.json")));
   const std::pair<SettingPlace, const char*> places[] = {{SettingPlace::picture, "root"},
                                                          {SettingPlace::structure, "structure"},
                                                          {SettingPlace::look, "representation"}};

@@ -10,6 +10,7 @@
 #include "app/scene/mvs_file.h"
 #include "app/scene/mvs_scene.h"
 #include "core/error.h"
+#include "tests/support/paths.h"
 #include "tests/support/process.h"
 
 namespace meniscus::test {
@@ -33,7 +34,7 @@ inline Json sceneFile(Json root) {
 }
 
 inline std::string moleculePath(const std::string& name) {
-  return std::string(MENISCUS_MOLECULES) + "/" + name;
+  return projectFile("molecules/" + name);
 }
 
 /// root > download > parse > structure, with what stands under the structure, and what beside the download.

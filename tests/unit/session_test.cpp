@@ -13,6 +13,7 @@
 #include "app/view/moving_quality.h"
 #include "core/error.h"
 #include "io/structure_reader.h"
+#include "tests/support/paths.h"
 #include "tests/support/random.h"
 
 namespace meniscus {
@@ -120,9 +121,9 @@ TEST(RenderArguments, AreQuotedForAShell) {
 
 TEST(CidOf, SelectsEveryAtomAlone) {
   Logger logger;
-  for (const char* name : {MENISCUS_MOLECULES "/3al1.pdb.gz", MENISCUS_MOLECULES "/133d.pdb",
-                           MENISCUS_TEST_DATA "/structures/altlocs.pdb"}) {
-    const Molecule molecule = std::move(readStructure(name, {}, logger).models.front());
+  for (const char* file :
+       {"molecules/3al1.pdb.gz", "molecules/133d.pdb", "tests/data/structures/altlocs.pdb"}) {
+    const Molecule molecule = std::move(readStructure(test::projectFile(file), {}, logger).models.front());
     std::size_t named = 0;
     for (std::uint32_t atom = 0; atom < molecule.atomCount(); ++atom) {
       const std::string cid = cidOf(molecule, atom);
@@ -130,7 +131,7 @@ TEST(CidOf, SelectsEveryAtomAlone) {
       ++named;
       EXPECT_EQ(selectAtoms(molecule, cid), std::vector<std::uint32_t>{atom}) << cid;
     }
-    EXPECT_EQ(named, molecule.atomCount()) << name;
+    EXPECT_EQ(named, molecule.atomCount()) << file;
   }
 }
 

@@ -7,11 +7,12 @@
 #include <string_view>
 
 #include "io/structure_reader.h"
+#include "tests/support/paths.h"
 
 namespace meniscus::test {
 
 inline std::filesystem::path dataFile(const std::string& name) {
-  return std::filesystem::path(MENISCUS_TEST_DATA) / "structures" / name;
+  return projectFile("tests/data/structures/" + name);
 }
 
 struct Read {
@@ -38,7 +39,7 @@ inline Read readData(const std::string& name, const StructureOptions& options = 
 
 /// The first model of a file of molecules/.
 inline Molecule readMolecule(const std::string& name, const StructureOptions& options = {}) {
-  return readFile(std::filesystem::path(MENISCUS_MOLECULES) / name, options).molecule();
+  return readFile(projectFile("molecules/" + name), options).molecule();
 }
 
 /// A file that lives as long as the object.

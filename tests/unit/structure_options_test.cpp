@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/structure_counts.h"
+#include "tests/support/paths.h"
 #include "tests/unit/structure_files.h"
 
 namespace meniscus {
@@ -75,8 +76,7 @@ TEST(Selection, gemmiSyntax) {
 }
 
 TEST(Selection, aNumberAloneIsThatResidue) {
-  const Molecule ubiquitin =
-      test::readFile(std::filesystem::path(MENISCUS_MOLECULES) / "1ubq.pdb").molecule();
+  const Molecule ubiquitin = test::readFile(test::projectFile("molecules/1ubq.pdb")).molecule();
   EXPECT_EQ(selectAtoms(ubiquitin, "//A/48").size(), 9u);
   EXPECT_EQ(selectAtoms(ubiquitin, "//A/48/CA").size(), 1u);
   EXPECT_EQ(selectAtoms(ubiquitin, "//A/48-48").size(), 9u);

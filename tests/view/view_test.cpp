@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "tests/support/paths.h"
 #include "tests/view/window_fixture.h"
 
 namespace meniscus::test {
@@ -19,7 +20,7 @@ namespace {
 constexpr int kPanel = 330;  // width of the panels
 
 std::string molecule(const std::string& name) {
-  return std::string(MENISCUS_MOLECULES "/") + name;
+  return projectFile("molecules/" + name);
 }
 
 struct PdbAtom {
@@ -238,7 +239,7 @@ TEST_F(WindowTest, DividerIsDragged) {
 }
 
 TEST_F(WindowTest, ModelsArePlayedAndSavedOneByOne) {
-  std::filesystem::copy(MENISCUS_TEST_DATA "/structures/models.pdb", folder_ / "models.pdb");
+  std::filesystem::copy(projectFile("tests/data/structures/models.pdb"), folder_ / "models.pdb");
   ASSERT_NO_FATAL_FAILURE(open({"models.pdb", "--size", "200x160", "--samples", "1"}));
   ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
   key("space");
@@ -289,7 +290,7 @@ TEST_F(WindowTest, SceneIsDrawnFromWhereItIsSeen) {
 TEST(ViewWithoutDisplay, SaysSoAndNamesRender) {
   ProcessOptions options;
   options.environment = {{"DISPLAY", ""}, {"WAYLAND_DISPLAY", ""}};
-  const ProcessResult result = runProcess({MENISCUS_EXECUTABLE, "view", molecule("1ubq.pdb")}, options);
+  const ProcessResult result = runProcess({program(), "view", molecule("1ubq.pdb")}, options);
   EXPECT_EQ(result.exitCode, 3);
   EXPECT_TRUE(result.err.starts_with("meniscus: no window can be opened here")) << result.err;
   EXPECT_NE(result.err.find("'meniscus render FILE -o OUT.png'"), std::string::npos) << result.err;
@@ -297,13 +298,13 @@ TEST(ViewWithoutDisplay, SaysSoAndNamesRender) {
 }
 
 TEST(ViewWithoutDisplay, RefusesWhatIsNotForAWindow) {
-  const ProcessResult missing = runProcess({MENISCUS_EXECUTABLE, "view", "/nonexistent/x.pdb"});
+  const ProcessResult missing = runProcess({program(), "view", "/nonexistent/x.pdb"});
   EXPECT_EQ(missing.exitCode, 1);
   EXPECT_EQ(missing.err, "meniscus: /nonexistent/x.pdb: no such file: check the path\n");
-  const ProcessResult output = runProcess({MENISCUS_EXECUTABLE, "view", molecule("1ubq.pdb"), "-o", "x.png"});
+  const ProcessResult output = runProcess({program(), "view", molecule("1ubq.pdb"), "-o", "x.png"});
   EXPECT_EQ(output.exitCode, 2);
   EXPECT_TRUE(output.err.starts_with("meniscus: --output: is for meniscus render")) << output.err;
-  const ProcessResult help = runProcess({MENISCUS_EXECUTABLE, "view", "--help"});
+  const ProcessResult help = runProcess({program(), "view", "--help"});
   EXPECT_EQ(help.exitCode, 0);
   EXPECT_NE(help.out.find("Usage: meniscus view"), std::string::npos);
 }

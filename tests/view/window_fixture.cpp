@@ -9,6 +9,8 @@
 #include <cstdlib>
 #include <thread>
 
+#include "tests/support/paths.h"
+
 namespace meniscus::test {
 namespace {
 
@@ -107,7 +109,7 @@ void WindowTest::waitFor(const std::string& what, const std::function<bool()>& h
 }
 
 void WindowTest::open(const std::vector<std::string>& arguments) {
-  std::vector<std::string> argv{MENISCUS_EXECUTABLE, "view", "--stats", "stats.json"};
+  std::vector<std::string> argv{program(), "view", "--stats", "stats.json"};
   argv.insert(argv.end(), arguments.begin(), arguments.end());
   viewer_ = std::make_unique<BackgroundProcess>(
       argv, BackgroundProcess::Environment{{"DISPLAY", display_}, {"WAYLAND_DISPLAY", ""}}, folder_.path(),
@@ -181,11 +183,11 @@ std::string WindowTest::clipboard() {
 }
 
 ProcessResult WindowTest::runCommand(const std::string& line, const std::filesystem::path& folder) {
-  const std::string program = "meniscus ";
-  EXPECT_TRUE(line.starts_with(program)) << line;
+  const std::string name = "meniscus ";
+  EXPECT_TRUE(line.starts_with(name)) << line;
   ProcessOptions options;
   options.folder = folder;
-  return runProcess({"/bin/sh", "-c", "'" MENISCUS_EXECUTABLE "' " + line.substr(program.size())}, options);
+  return runProcess({"/bin/sh", "-c", "'" + program() + "' " + line.substr(name.size())}, options);
 }
 
 }  // namespace meniscus::test
