@@ -57,14 +57,21 @@ PanelOptions parsePanel(std::string_view option, std::string_view value) {
   }
   std::istringstream words(text);
   for (std::string word; words >> word;) panel.arguments.push_back(word);
+  if (panel.arguments == std::vector<std::string>{"error"}) {
+    panel.error = true;
+    panel.arguments.clear();
+    if (panel.label.empty()) panel.label = "error";
+    return panel;
+  }
   if (panel.arguments.size() == 1 && !panel.arguments.front().starts_with("-")) {
     const Representation representation = parseRepresentation(option, panel.arguments.front());
     if (panel.label.empty()) panel.label = panel.arguments.front();
     panel.arguments = {"--representation", std::string(representationName(representation))};
   }
   if (panel.arguments.empty())
-    throwBadValue(option, value,
-                  "a representation, or options as in 'skin: --representation surface --opacity 0.5'");
+    throwBadValue(
+        option, value,
+        "a representation, options as in 'skin: --representation surface --opacity 0.5', or 'error'");
   try {
     panel.arguments = withStyleAlone(panel.arguments);
     const RenderOptions parsed = parseSettings(panel.arguments);
@@ -131,8 +138,23 @@ void PanelCanvas::paste(const PanelPlace& place, std::span<const std::byte> pict
   }
 }
 
+void PanelCanvas::paste(const PanelPlace& place, std::span<const std::byte> picture, int width, int height,
+                        int left, int top) {
+  for (int y = std::max(-top, 0); y < std::min(height, place.height - top); ++y)
+    for (int x = std::max(-left, 0); x < std::min(width, place.width - left); ++x)
+      std::memcpy(at(place.x + left + x, place.y + top + y),
+                  picture.data() + 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                                        static_cast<std::size_t>(x)),
+                  4);
+}
+
 void PanelCanvas::write(const PanelPlace& place, const LabelSprite& label, const LabelColors& colors) {
   const int margin = static_cast<int>(std::lround(kLabelMargin * place.height));
+  write(place, label, colors, margin, margin);
+}
+
+void PanelCanvas::write(const PanelPlace& place, const LabelSprite& label, const LabelColors& colors,
+                        int left, int top) {
   const auto blend = [](std::byte* pixel, Rgb color, std::uint8_t cover) {
     const auto mix = [&](int i, unsigned to) {
       const unsigned from = std::to_integer<unsigned>(pixel[i]);
@@ -143,12 +165,12 @@ void PanelCanvas::write(const PanelPlace& place, const LabelSprite& label, const
     mix(2, color & 0xFFu);
     mix(3, 255);
   };
-  for (int y = 0; y < std::min(label.height, place.height - margin); ++y) {
-    for (int x = 0; x < std::min(label.width, place.width - margin); ++x) {
+  for (int y = std::max(-top, 0); y < std::min(label.height, place.height - top); ++y) {
+    for (int x = std::max(-left, 0); x < std::min(label.width, place.width - left); ++x) {
       const LabelTexel& texel =
           label.texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(label.width) +
                        static_cast<std::size_t>(x)];
-      std::byte* pixel = at(place.x + margin + x, place.y + margin + y);
+      std::byte* pixel = at(place.x + left + x, place.y + top + y);
       blend(pixel, colors.seam, texel.seam);
       blend(pixel, colors.text, texel.text);
     }

@@ -21,9 +21,10 @@ inline constexpr std::size_t kMostPanels = 4;
 struct PanelOptions {
   std::string label;                   ///< empty = none
   std::vector<std::string> arguments;  ///< of `meniscus render`, after those that all panels share
+  bool error = false;                  ///< shows how far the second panel is from the first, in false colour
 };
 
-/// "[LABEL: ]OPTIONS", or the name of a representation. Throws UsageError.
+/// "[LABEL: ]OPTIONS", the name of a representation, or "error". Throws UsageError.
 PanelOptions parsePanel(std::string_view option, std::string_view value);
 
 /// Where a panel is in the whole picture, pixels from its upper left corner.
@@ -51,6 +52,11 @@ class PanelCanvas {
   void paste(const PanelPlace& place, std::span<const std::byte> picture);
   /// In the upper left corner of a panel.
   void write(const PanelPlace& place, const LabelSprite& label, const LabelColors& colors);
+  /// At a place in a panel, pixels from its upper left corner.
+  void write(const PanelPlace& place, const LabelSprite& label, const LabelColors& colors, int left, int top);
+  /// A small picture of `width` by `height` pixels there, RGBA, 8 bits, rows from the top.
+  void paste(const PanelPlace& place, std::span<const std::byte> picture, int width, int height, int left,
+             int top);
   std::span<const std::byte> bytes() const { return bytes_; }
 
  private:

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "app/commands.h"
+#include "app/error_panel.h"
 #include "app/label_text.h"
 #include "core/buffer_sink.h"
 #include "core/error.h"
@@ -92,6 +93,51 @@ ImageFileOptions imageOptionsFor(const Picture& picture) {
                     {"Source", picture.source},
                     {"Comment", picture.command}};
   return image;
+}
+
+void writeLabel(const std::string& text, double letters, const RenderOptions& options,
+                const PanelPlace& place, PanelCanvas& canvas) {
+  for (const LabelSprite& sprite : drawLabels({{text, {}, 0}}, letters, options.labelFont))
+    canvas.write(place, sprite, options.labelColors);
+}
+
+// Below the label, a line each, in letters that let the longest fit.
+void writeSummary(const ErrorPicture& errors, const RenderOptions& options, const PanelPlace& place,
+                  PanelCanvas& canvas) {
+  const double label = 0.01 * options.labelSize * options.size.height;
+  std::vector<Label> lines;
+  for (const std::string& line : errors.summary()) lines.push_back({line, {}, 0});
+  const auto drawn = [&](double letters) {
+    return drawLabels(lines, std::max(letters, 1.0), options.labelFont);
+  };
+  const int margin = static_cast<int>(std::lround(0.01 * place.height));
+  std::vector<LabelSprite> sprites = drawn(0.7 * label);
+  int widest = 1;
+  for (const LabelSprite& sprite : sprites) widest = std::max(widest, sprite.width);
+  if (widest > place.width - 2 * margin) sprites = drawn(0.7 * label * (place.width - 2 * margin) / widest);
+  int top = margin + static_cast<int>(std::lround(1.3 * label));
+  for (const LabelSprite& sprite : sprites) {
+    canvas.write(place, sprite, options.labelColors, margin, top);
+    top += sprite.height;
+  }
+}
+
+// What the colours of an error panel mean, along its lower edge.
+void drawScale(const RenderOptions& options, const PanelPlace& place, PanelCanvas& canvas) {
+  const double letters = std::max(0.007 * options.labelSize * options.size.height, 1.0);
+  const std::vector<LabelSprite> ends =
+      drawLabels({{fmt::format("{:g} Å", kLeastError), {}, 0}, {fmt::format("{:g} Å", kMostError), {}, 0}},
+                 letters, options.labelFont);
+  const int height = std::max(static_cast<int>(std::lround(letters)), 1);
+  int left = height, right = place.width - height;
+  const int top = place.height - 2 * height;
+  const auto middle = [&](const LabelSprite& end) { return top + (height - end.height) / 2; };
+  canvas.write(place, ends[0], options.labelColors, left, middle(ends[0]));
+  canvas.write(place, ends[1], options.labelColors, right - ends[1].width, middle(ends[1]));
+  left += ends[0].width + height / 2;
+  right -= ends[1].width + height / 2;
+  if (right > left)
+    canvas.paste(place, drawErrorScale(right - left, height), right - left, height, left, top);
 }
 
 RenderSettings settingsFor(const RenderOptions& options) {
@@ -199,14 +245,43 @@ PictureReport PictureDrawer::render(Picture& picture, RowSink& sink, const Pixel
   return report;
 }
 
+// Of the rays of the first panel's camera; not every ray that a pixel has, but the one through its centre.
+HitImage PictureDrawer::panelHits(const Picture& picture, std::size_t panel, const PanelPlace& place) {
+  const Picture& shown = picture.panels[panel];
+  show(shown.primitives);
+  const View view = makeView(seenBy(picture.scene.camera, picture.panels.front().scene.camera), place.picture,
+                             shown_->bounds());
+  return renderer().renderHits(view, {true, false, false}, shown.options.surface, shown.options.quadrics);
+}
+
+// How far the second panel is from the first.
+void PictureDrawer::drawErrorPanel(const Picture& picture, const PanelPlace& place, PanelCanvas& canvas) {
+  const HitImage truth = panelHits(picture, 0, place), compared = panelHits(picture, 1, place);
+  const ErrorPicture errors = drawErrors(compared, truth, picture.panels.front().scene.background);
+  canvas.paste(place, errors.pixels);
+  writeSummary(errors, picture.options, place, canvas);
+  drawScale(picture.options, place, canvas);
+}
+
 // One after the other, by the camera of the whole.
 PictureReport PictureDrawer::renderPanels(Picture& picture, RowSink& sink, const std::string& label) {
   const RenderOptions& options = picture.options;
   const std::vector<PanelPlace> places = placePanels(picture.panels.size(), options.size, options.divider);
   requireMemoryForPanels(picture);
+  const bool compared = std::any_of(options.panels.begin(), options.panels.end(),
+                                    [](const PanelOptions& panel) { return panel.error; });
+  for (std::size_t i = 0; compared && i < 2; ++i)
+    if (!picture.panels[i].primitives) picture.panels[i].primitives = primitivesOf(picture.panels[i]);
+  const double letters = std::max(0.01 * options.labelSize * options.size.height, 1.0);
   PanelCanvas canvas(options.size);
   PictureReport report;
   for (std::size_t i = 0; i < places.size(); ++i) {
+    const std::string& text = options.panels[i].label;
+    if (options.panels[i].error) {
+      drawErrorPanel(picture, places[i], canvas);
+      writeLabel(text, letters, options, places[i], canvas);
+      continue;
+    }
     Picture& panel = picture.panels[i];
     panel.options.size = places[i].picture;
     panel.scene.camera = seenBy(picture.scene.camera, panel.scene.camera);
@@ -215,10 +290,7 @@ PictureReport PictureDrawer::renderPanels(Picture& picture, RowSink& sink, const
     BufferSink buffer(bytes);
     PictureReport own = render(panel, buffer, {PixelFormat::rgba8}, label);
     canvas.paste(places[i], bytes);
-    const std::string& text = options.panels[i].label;
-    const double letters = std::max(0.01 * options.labelSize * options.size.height, 1.0);
-    for (const LabelSprite& sprite : drawLabels({{text, {}, 0}}, letters, options.labelFont))
-      canvas.write(places[i], sprite, options.labelColors);
+    writeLabel(text, letters, options, places[i], canvas);
     if (i == 0)
       report = std::move(own);
     else

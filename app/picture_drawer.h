@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 
+#include "app/panels.h"
 #include "app/picture.h"
 #include "app/progress.h"
 #include "app/run_report.h"
@@ -42,6 +43,8 @@ class PictureDrawer {
   void exportMesh(Picture& picture);
   PictureReport render(Picture& picture, RowSink& sink, const PixelLayout& layout, const std::string& label);
   PictureReport renderPanels(Picture& picture, RowSink& sink, const std::string& label);
+  void drawErrorPanel(const Picture& picture, const PanelPlace& place, PanelCanvas& canvas);
+  HitImage panelHits(const Picture& picture, std::size_t panel, const PanelPlace& place);
   void show(std::shared_ptr<const Primitives> primitives);
   Renderer& renderer();
 

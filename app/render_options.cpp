@@ -109,7 +109,9 @@ void addPanelOptions(CLI::App& app, RenderOptions& o) {
   group.values("--panel", "[LABEL: ]OPTIONS",
                "Two to four pictures in one, seen by one camera; each with\n"
                "options of its own, as in 'skin: --representation surface',\n"
-               "or the name of a representation. May be repeated",
+               "or the name of a representation; the third or fourth may be\n"
+               "'error': how far the second is from the first, in false\n"
+               "colour. May be repeated",
                [&o](auto& n, auto& v) { o.panels.push_back(parsePanel(n, v)); });
   group.value("--divider", "F",
               "Instead of beside each other, two panels lie on both sides of\n"
@@ -494,6 +496,9 @@ void requirePanelsConsistent(const RenderOptions& o) {
   if (o.panels.size() == 1 || o.panels.size() > kMostPanels)
     throw UsageError(
         fmt::format("--panel: there are two to {} in a picture, not {}", kMostPanels, o.panels.size()));
+  for (std::size_t i = 0; i < o.panels.size(); ++i)
+    if (o.panels[i].error && i < 2)
+      throw UsageError("--panel: 'error' compares the first two panels; give it after them");
   if (!o.exportMesh.empty() || !o.saveScene.empty())
     throw UsageError("--panel: pictures have panels; meshes and saved scenes do not");
   if (o.bitDepth != 8 || o.layers != Layers{} ||

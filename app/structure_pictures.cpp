@@ -278,6 +278,15 @@ RenderOptions panelOptions(const RenderOptions& all, const PanelOptions& panel, 
   return options;
 }
 
+// It has nothing of its own to show.
+Picture errorPanel(const Picture& first) {
+  Picture panel;
+  panel.options = first.options;
+  panel.scene.camera = first.scene.camera;
+  panel.scene.background = first.scene.background;
+  return panel;
+}
+
 // That of the first panel, at a distance that suits all of them.
 Camera cameraOfPanels(const Preparation& all, const RenderOptions& options, ImageSize size) {
   Camera camera = all.pictures.front().scene.camera;
@@ -293,6 +302,10 @@ Preparation picturesWithPanels(const std::string& file, const std::string& bytes
   const std::vector<PanelPlace> places = placePanels(options.panels.size(), options.size, options.divider);
   Preparation all;
   for (std::size_t i = 0; i < options.panels.size(); ++i) {
+    if (options.panels[i].error) {
+      for (Picture& picture : all.pictures) picture.panels.push_back(errorPanel(picture.panels.front()));
+      continue;
+    }
     const RenderOptions own = panelOptions(options, options.panels[i], places[i].picture);
     Preparation made = StructurePictures(file, own).make(bytes);
     if (i == 0) {

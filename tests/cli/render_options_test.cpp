@@ -1,6 +1,8 @@
 // Every option of `meniscus render` does what its help says.
 
+#include <array>
 #include <cmath>
+#include <map>
 
 #include "tests/cli/cli_test.h"
 #include "tests/support/paths.h"
@@ -225,6 +227,31 @@ TEST_F(RenderOption, panelsAreThoseOptionsSeenByOneCamera) {
     for (int x = 0; x < 32; ++x) EXPECT_EQ(both.at(x, y), balls.at(x, y)) << x << " " << y;
     for (int x = 34; x < 64; ++x) EXPECT_EQ(both.at(x, y), skin.at(x, y)) << x << " " << y;
   }
+}
+
+TEST_F(RenderOption, anErrorPanelComparesTheFirstTwo) {
+  const auto colors = [&](const std::string& method) {
+    const Picture picture =
+        render("c60.pdb", {"--size", "192x64", "--label-size", "0.1", "--background", "black",
+                           "--representation", "surface", "--panel", "--surface-method tiles", "--panel",
+                           "--surface-method " + method, "--panel", "error"});
+    std::map<std::array<int, 3>, int> counts;  // in a part without label and scale
+    for (int y = 16; y < 56; ++y) {
+      for (int x = 140; x < 180; ++x) {
+        const auto pixel = picture.at(x, y);
+        ++counts[{static_cast<int>(std::lround(255 * pixel[0])),
+                  static_cast<int>(std::lround(255 * pixel[1])),
+                  static_cast<int>(std::lround(255 * pixel[2]))}];
+      }
+    }
+    return counts;
+  };
+  const std::array<int, 3> none{0x44, 0x01, 0x54};
+  const auto same = colors("tiles");
+  EXPECT_GT(same.at(none), 400);
+  EXPECT_LE(same.size(), 2u) << "no error, or the background";
+  const auto mesh = colors("mesh");
+  EXPECT_GT(mesh.size(), 50u) << "an error of its own nearly everywhere";
 }
 
 TEST_F(RenderOption, watersAreLeftOutUnlessAlone) {

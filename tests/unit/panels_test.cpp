@@ -74,6 +74,14 @@ TEST(ParsePanel, TakesRepresentationsLabelsAndOptions) {
   EXPECT_EQ(styled.back(), "4");
 }
 
+TEST(ParsePanel, KnowsErrors) {
+  EXPECT_FALSE(parsePanel("--panel", "surface").error);
+  const PanelOptions plain = parsePanel("--panel", "error"), named = parsePanel("--panel", "how far: error");
+  EXPECT_TRUE(plain.error && named.error);
+  EXPECT_EQ(plain.label, "error");
+  EXPECT_EQ(named.label, "how far");
+}
+
 TEST(ParsePanel, NamesWhatIsWrong) {
   for (const char* bad : {"", "x: ", "nonsense", "--nonsense 1", "--size 3x3", "--panel surface", "-o a.png",
                           "a.pdb b.pdb", "--opacity 7", "--export a.ply", "--turntable 5", "--focus (HEM)",
@@ -96,6 +104,9 @@ TEST(PanelOptions, MustMakeSense) {
   EXPECT_TRUE(parse({"--panel", "surface", "--panel", "cartoon", "--divider", "0.2"}));
   EXPECT_THROW(parse({"--panel", "surface"}), UsageError);
   EXPECT_THROW(parse({"--divider", "0.5"}), UsageError);
+  EXPECT_TRUE(parse({"--panel", "surface", "--panel", "cartoon", "--panel", "error"}));
+  EXPECT_THROW(parse({"--panel", "surface", "--panel", "error"}), UsageError);
+  EXPECT_THROW(parse({"--panel", "error", "--panel", "surface", "--panel", "cartoon"}), UsageError);
   EXPECT_THROW(parse({"--panel", "surface", "--panel", "cartoon", "--depth", "16"}), UsageError);
   EXPECT_THROW(parse({"--panel", "surface", "--panel", "cartoon", "-o", "a.exr"}), UsageError);
   EXPECT_THROW(parse({"--panel", "surface", "--panel", "cartoon", "--save-scene", "s.mvsj"}), UsageError);
