@@ -29,9 +29,14 @@ std::string extensionOf(const std::filesystem::path& path) {
 }
 
 /// What ffmpeg is told about the file it writes.
-std::vector<std::string> encoding(const std::string& extension) {
-  // Codecs want even sides.
-  const std::string even = "pad=ceil(iw/2)*2:ceil(ih/2)*2";
+std::vector<std::string> encoding(const std::string& extension, ImageSize size) {
+  // Codecs want even sides: a column or row more, like the last.
+  const int column = size.width % 2, row = size.height % 2;
+  const std::string even =
+      column + row == 0
+          ? "null"
+          : fmt::format("format=gbrp,pad=iw+{0}:ih+{1},fillborders=right={0}:bottom={1}:mode=smear", column,
+                        row);
   if (extension == ".gif")
     return {"-filter_complex", "split[a][b];[a]palettegen[p];[b][p]paletteuse", "-f", "gif"};
   if (extension == ".webm")
@@ -118,7 +123,7 @@ FilmFile::FilmFile(const std::filesystem::path& path, ImageSize size, double fra
                                  "-1",
                                  "-fflags",
                                  "+bitexact"};
-  for (const std::string& word : encoding(extensionOf(path))) words.push_back(word);
+  for (const std::string& word : encoding(extensionOf(path), size)) words.push_back(word);
   words.push_back("file:" + impl_->file.writtenPath().string());
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
