@@ -51,21 +51,13 @@ struct Found {
 
 const Found kNothing = Found(false, 0.0);
 
-// Of a ball alone the surface is its core, a sphere (§3.1, "single case").
+// §3.1, "single case".
 Found meetCore(Ball ball, SceneRay ray, Split start, float size, inout uint status) {
   BallRay b = ballOnRay(ball.projection, ray);
-  float square = ball.projection.eye.w - dot(b.nearest, b.nearest);
-  float halfChord = sqrt(max(square, 0.0));
-  float middle = placeBetween(start, b.middle);
-  float low = middle - halfChord, high = middle + halfChord;
-  bool within = square > 0.0 && low < 0.0 && high > 0.0;
-  if ((status & (kInside | kOutside)) == 0u) status |= within ? kInside : kOutside;
-  if ((status & kInside) != 0u) {
-    if (!within) return Found(true, 0.0);
-    return high < size ? Found(true, high) : kNothing;
-  }
-  if (square > 0.0 && high > 0.0 && low < size) return Found(true, max(low, 0.0));
-  return kNothing;
+  vec2 ends = coreEnds(placeBetween(start, b.middle), halfCoreChord(ball, b));
+  if ((status & (kInside | kOutside)) == 0u) status |= isInCore(ends, 0.0) ? kInside : kOutside;
+  float at = crossCore(ends, 0.0, size, (status & kInside) != 0u);
+  return at < kNone ? Found(true, at) : kNothing;
 }
 
 Found meetSum(ivec2 texel, uint count, SceneRay ray, Split start, float size, inout uint status,

@@ -27,7 +27,6 @@ layout(std430, binding = 4) restrict buffer Control {
 
 const int kMostDepth = 64;
 const int kMostChords = 64;
-const float kNone = 1e30;
 
 struct WorldRay {
   vec3 base, inverse;  // in model axes; places on the ray are measured from the base
@@ -65,7 +64,8 @@ struct Ray {
 // Balls of a cell that the ray passes: place nearest to the centre, relative to the cell's; R^2 less the
 // squared distance; coefficient; 1 / R^2. Arrays are global: as parameters they would be copied.
 vec4 gChords[kMostChords];
-vec2 gEnds[kMostChords];  // within the cell
+vec2 gEnds[kMostChords];    // within the cell
+float gCores[kMostChords];  // halves of the chords in the balls' cores
 int gChordCount;
 bool gOverflow = false;
 
@@ -84,6 +84,7 @@ void findChords(Node leaf, Ray ray, Split base, float length_) {
     }
     gChords[gChordCount] = vec4(middle, b.halfChord2, ball.coefficient, ball.inverseR2);
     gEnds[gChordCount] = ends;
+    gCores[gChordCount] = halfCoreChord(ball, b);
     ++gChordCount;
   }
 }
@@ -156,11 +157,12 @@ float search(Ray ray, float length_, inout Effort effort, inout uint pieces) {
 float searchStretch(Ray ray, float from, float to, inout Effort effort, inout uint pieces) {
   float middle = 0.5 * (from + to), most = -uField.x, least = -uField.x, size = uField.x;
   float smallest = kNone;
-  int active_ = 0;
+  int active_ = 0, last = 0;
   for (int i = 0; i < gChordCount; ++i) {
     if (!(gEnds[i].x < middle && gEnds[i].y > middle)) continue;
     vec4 c = gChords[i];
     ++active_;
+    last = i;
     smallest = min(smallest, 1.0 / c.w);
     float a = from - c.x, b = to - c.x;
     float near = a <= 0.0 && b >= 0.0 ? 0.0 : min(a * a, b * b), far = max(a * a, b * b);
@@ -171,6 +173,7 @@ float searchStretch(Ray ray, float from, float to, inout Effort effort, inout ui
     size += abs(high);
   }
   if (active_ == 0) return ray.sign_ < 0.0 ? from : kNone;
+  if (active_ == 1) return crossCore(coreEnds(gChords[last].x, gCores[last]), from, to, ray.sign_ < 0.0);
   // Less cannot be told from a ray that touches without crossing.
   float margin = 3e-7 * size;
   if (ray.sign_ > 0.0 ? most <= margin : least >= -margin) return kNone;
@@ -262,7 +265,8 @@ void main() {
   if (uRegion.z != 0 && beginsInside(ray, start)) ray.sign_ = -1.0;
 
   vec2 all = clipTo(ray.world, fetchNode(0u), start.hi, limit);
-  if (all.x <= all.y) push(0u, all.x);
+  if (!(all.x <= all.y)) return;
+  push(0u, all.x);
   Effort effort = Effort(0, false, false);
   uint pieces = 0u, nodes = 0u, leaves = 0u, balls = 0u;
   while (gTop > 0 && !gOverflow) {
@@ -301,12 +305,12 @@ void main() {
     oHit = uvec4(index, floatBitsToUint(place.hi), floatBitsToUint(place.lo),
                  kHit | (ray.sign_ < 0.0 ? kInsideOut : 0u));
   }
-  if (leaves == 0u) return;
   if (gOverflow || loopsAreEnded(uRegion.w)) {
     oHit = uvec4(0u, 0u, 0u, kUnanswered);
     atomicAdd(uUnanswered, 1u);
     return;
   }
+  if (leaves == 0u) return;
   int sums = sumsOf(texel);
   atomicAdd(uSums[sums].pixels, 1u);
   atomicAdd(uSums[sums].pieces, pieces);

@@ -110,14 +110,11 @@ Polygon sumExactly(Piece piece, Split now, float slant, SceneRay ray, float from
 }
 
 #ifndef CUBIC
-// Of a ball alone the surface is its core, a sphere: exact however close the level is to its maximum. true:
-// it is crossed at `at`, between `from` and `size`.
+// Of a ball alone. true: its core is crossed at `at`, between `from` and `size`.
 bool meetCore(inout Trace trace, Ball ball, SceneRay ray, Split now, float from, float size, out float at) {
   BallRay b = ballOnRay(ball.projection, ray);
-  float square = ball.projection.eye.w - dot(b.nearest, b.nearest);
-  float halfChord = sqrt(max(square, 0.0)), middle = placeBetween(now, b.middle);
-  float low = middle - halfChord, high = middle + halfChord;
-  bool within = square > 0.0 && low < from && high > from;
+  vec2 ends = coreEnds(placeBetween(now, b.middle), halfCoreChord(ball, b));
+  bool within = isInCore(ends, from);
   ++trace.looked;
   if (!trace.known) {
     trace.known = true;
@@ -125,8 +122,8 @@ bool meetCore(inout Trace trace, Ball ball, SceneRay ray, Split now, float from,
   }
   at = from;
   if (from == 0.0 && within != trace.inside) return true;  // rounding opens no cracks between pieces
-  at = trace.inside ? high : low;
-  return square > 0.0 && at >= from && at < size;
+  at = trace.inside ? ends.y : ends.x;
+  return at >= from && at < size;
 }
 #endif
 

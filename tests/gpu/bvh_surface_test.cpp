@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <stdexcept>
+#include <string>
+
 #include "core/error.h"
+#include "core/generated_scenes.h"
 #include "tests/gpu/surface_judge.h"
 #include "tests/support/exact_field.h"
 
@@ -11,6 +15,15 @@ namespace {
 
 SurfaceSettings bvh(std::map<std::string, double> parameters = {}) {
   return {"bvh", std::move(parameters)};
+}
+
+test::SurfaceView stabilityScene(std::string_view name) {
+  for (const StabilityRecipe& recipe : stabilityRecipes()) {
+    if (recipe.name != name) continue;
+    const StabilityScene scene = recipe.make(1, {48, 36});
+    return {std::make_shared<Primitives>(*scene.surface), scene.view};
+  }
+  throw std::out_of_range(std::string(name));
 }
 
 constexpr Projection kBoth[] = {Projection::perspective, Projection::orthographic};
@@ -114,10 +127,22 @@ TEST_F(BvhSurface, LevelsNearZeroAndNearTheMaximum) {
     SCOPED_TRACE(level);
     expectExact(judge(scene, viewOf(scene, {96, 72}), bvh(), "level" + std::to_string(level)));
   }
-  for (const double below : {1e-2, 1e-3, 1e-4}) {
-    const test::SurfaceView s = test::nearMaximum(1, below);
-    SCOPED_TRACE(below);
-    expectExact(judge(s.scene, s.view, bvh(), "below" + std::to_string(below)));
+  for (const unsigned balls : {1u, 2u}) {
+    for (const double below : {1e-2, 1e-3, 1e-4}) {
+      const test::SurfaceView s = test::nearMaximum(balls, below);
+      SCOPED_TRACE(below);
+      expectExact(judge(s.scene, s.view, bvh(), "below" + std::to_string(below)));
+    }
+  }
+}
+
+// Kernels of degree 32, whose loops a software driver may end for a whole group of pixels, and lone balls at
+// levels next to 0 and next to the most that they reach.
+TEST_F(BvhSurface, StiffScenes) {
+  for (const char* name : {"power-16", "steep-field", "level-low", "level-high"}) {
+    SCOPED_TRACE(name);
+    const test::SurfaceView s = stabilityScene(name);
+    expectExact(judge(s.scene, s.view, bvh(), name));
   }
 }
 
