@@ -46,8 +46,14 @@ constexpr int kMembersPerRow = 4096;
 constexpr std::uint32_t kHit = 1, kInsideOut = 2, kUnanswered = 4;
 
 // Loops of software drivers end after 65,535 turns (shaders/include/loops.glsl), and what the surface is
-// like is summed up in one over a cell's members.
-constexpr std::uint32_t kMostInCell = 50'000;
+// like is summed up in one over a cell's members, each of which takes `kernelDegree()` turns of the power
+// kernel's and none of the others'.
+constexpr std::uint32_t kMostTurns = 50'000;
+
+std::uint32_t mostInCell(const Kernel& kernel) {
+  const bool power = kernel.shape == KernelShape::power;
+  return kMostTurns / (power ? static_cast<std::uint32_t>(kernelDegree(kernel)) : 1u);
+}
 
 // BvhUniforms of shaders/include/bvh.glsl.
 struct BvhBlock {
@@ -122,12 +128,13 @@ void Bvh::prepare(const MetaballField& field) {
   tree_ = bvh::buildFieldTree(field, settings_);
   buildMs_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   tracer_.emplace(field, tree_, search_);
+  const std::uint32_t most = mostInCell(field.kernel);
   for (const bvh::Node& node : tree_.nodes) {
-    if (node.leaf() && node.count > kMostInCell)
+    if (node.leaf() && node.count > most)
       throw InputError(
           fmt::format("surface method bvh: {} balls of a surface overlap in one place, of which "
-                      "{} are possible; use --surface-method tiles",
-                      node.count, kMostInCell));
+                      "{} are possible with its kernel; use --surface-method tiles",
+                      node.count, most));
   }
   if (tree_.nodes.empty()) return;
   uploadTree();

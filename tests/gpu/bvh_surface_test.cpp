@@ -146,6 +146,24 @@ TEST_F(BvhSurface, StiffScenes) {
   }
 }
 
+// The loop over a cell's members has turns of the kernel's own in it.
+TEST_F(BvhSurface, AsManyBallsInACellAsTheKernelAllows) {
+  MetaballField field;
+  field.kernel = {KernelShape::power, 16};
+  for (unsigned i = 1; i <= 1500; ++i) field.balls.push_back({{0, 0, 0}, 2.0f, 1e-3f, 0x808080, i});
+  const View view = test::alongZ(0, 0, 10);
+  expectExact(judge(test::SurfaceScene(field), view, bvh()));
+  for (unsigned i = 1501; i <= 1600; ++i) field.balls.push_back({{0, 0, 0}, 2.0f, 1e-3f, 0x808080, i});
+  try {
+    draw(test::SurfaceScene(field), view, bvh());
+    ADD_FAILURE() << "drew it";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("1600 balls of a surface overlap in one place, of which 1562"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 TEST_F(BvhSurface, TangentRaysMissAndEnd) {
   expectTangentRaysMiss(bvh());
 }
