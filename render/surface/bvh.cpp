@@ -77,6 +77,13 @@ struct BvhCounts {
   std::uint32_t nodes, leaves, balls;
 };
 
+// A ball that the near plane cuts.
+bool mayBeginInside(const ProjectedField& projected) {
+  return std::any_of(projected.depths.begin(), projected.depths.end(), [&](const glm::dvec2& depths) {
+    return depths.x <= projected.nearDepth + 1e-6 * std::abs(projected.nearDepth);
+  });
+}
+
 class Bvh : public SurfaceMethod {
  public:
   explicit Bvh(const SurfaceParameters& values)
@@ -98,12 +105,12 @@ class Bvh : public SurfaceMethod {
 
   void draw(const PassContext& context, ShaderLibrary& shaders, const SurfaceTarget& target);
   void drawRegion(const PassContext& context, ShaderLibrary& shaders, const SurfaceTarget& target,
-                  const ProjectedField& projected, const ScreenRect& region);
+                  const ProjectedField& projected, bool inside, const ScreenRect& region);
   void uploadTree();
-  void setUniforms(const SurfaceTarget& target, const ProjectedField& projected, const ScreenRect& region);
+  void setUniforms(const SurfaceTarget& target, const ProjectedField& projected, bool inside,
+                   const ScreenRect& region);
   void answer(const gl::Texture& hits, const SurfaceTarget& target, const ProjectedField& projected,
               const ScreenRect& region);
-  bool mayBeginInside(const ProjectedField& projected) const;
 
   double tolerance_;
   bvh::Search search_;
@@ -111,7 +118,7 @@ class Bvh : public SurfaceMethod {
   const MetaballField* field_ = nullptr;
   std::vector<float> coreShares_;
   bvh::FieldTree tree_;
-  std::optional<bvh::FieldTracer> tracer_;
+  std::optional<bvh::FieldTracer> tracer_;  // once it is needed
   double buildMs_ = 0;
   gl::Texture nodes_, members_;
   BallTexture ballTexture_{4};
@@ -127,7 +134,7 @@ void Bvh::prepare(const MetaballField& field) {
   const auto start = std::chrono::steady_clock::now();
   tree_ = bvh::buildFieldTree(field, settings_);
   buildMs_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  tracer_.emplace(field, tree_, search_);
+  tracer_.reset();
   const std::uint32_t most = mostInCell(field.kernel);
   for (const bvh::Node& node : tree_.nodes) {
     if (node.leaf() && node.count > most)
@@ -170,19 +177,12 @@ void Bvh::draw(const PassContext& context, ShaderLibrary& shaders, const Surface
   ballTexture_.upload(balls.data(), balls.size());
   balls_.reserve(balls.size() * sizeof(ProjectedBall));
   balls_.write(balls.data(), balls.size() * sizeof(ProjectedBall));
+  const bool inside = mayBeginInside(projected);
   for (const ScreenRect& region : splitRect({0, 0, target.tile.width, target.tile.height}, kMostPixels))
-    drawRegion(context, shaders, target, projected, region);
-  context.bindTarget();
+    drawRegion(context, shaders, target, projected, inside, region);
 }
 
-// A ball that the near plane cuts.
-bool Bvh::mayBeginInside(const ProjectedField& projected) const {
-  return std::any_of(projected.depths.begin(), projected.depths.end(), [&](const glm::dvec2& depths) {
-    return depths.x <= projected.nearDepth + 1e-6 * std::abs(projected.nearDepth);
-  });
-}
-
-void Bvh::setUniforms(const SurfaceTarget& target, const ProjectedField& projected,
+void Bvh::setUniforms(const SurfaceTarget& target, const ProjectedField& projected, bool inside,
                       const ScreenRect& region) {
   const View& view = target.view;
   BvhBlock block{};
@@ -191,7 +191,7 @@ void Bvh::setUniforms(const SurfaceTarget& target, const ProjectedField& project
   const double plane = static_cast<double>(projected.block.plane.x);
   block.base = glm::vec4(glm::vec3(rows * glm::dvec3(0, 0, plane) + (view.pivot - target.origin)), 0);
   block.search = {static_cast<float>(tolerance_), 0, 0, 0};
-  block.region = {region.x, region.y, mayBeginInside(projected) ? 1 : 0, 2};
+  block.region = {region.x, region.y, inside ? 1 : 0, 2};
   bvhUniforms_.update(&block);
   fieldUniforms_.update(&projected.block);
   glBindBufferBase(GL_UNIFORM_BUFFER, 1, fieldUniforms_.object.name());
@@ -205,8 +205,8 @@ void Bvh::setUniforms(const SurfaceTarget& target, const ProjectedField& project
 }
 
 void Bvh::drawRegion(const PassContext& context, ShaderLibrary& shaders, const SurfaceTarget& target,
-                     const ProjectedField& projected, const ScreenRect& region) {
-  setUniforms(target, projected, region);
+                     const ProjectedField& projected, bool inside, const ScreenRect& region) {
+  setUniforms(target, projected, inside, region);
   control_.zero();
   const TextureLease hits =
       context.pool().lease("surface: hits", {gl::TextureFormat::rgba32ui, region.width, region.height});
@@ -236,6 +236,7 @@ void Bvh::drawRegion(const PassContext& context, ShaderLibrary& shaders, const S
 // The processor casts what the shader has left to it.
 void Bvh::answer(const gl::Texture& hits, const SurfaceTarget& target, const ProjectedField& projected,
                  const ScreenRect& region) {
+  if (!tracer_) tracer_.emplace(*field_, tree_, search_);
   Hits texels(static_cast<std::size_t>(region.pixels()));
   hits.read(region.width, region.height, region.width, texels.data());
   const bvh::ViewRays rays(target.view, target.origin);
