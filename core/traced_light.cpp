@@ -1,6 +1,6 @@
 #include "core/traced_light.h"
 
-#include <tbb/blocked_range.h>
+#include <tbb/blocked_range2d.h>
 #include <tbb/combinable.h>
 #include <tbb/parallel_for.h>
 
@@ -28,6 +28,9 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 // What changes the picture by less is the environment's light, whatever lies there.
 constexpr double kLeastWeight = 1.0 / 1024;
+// Rows that are traced between two looks at whether they are still wanted; pixels of a row that a thread
+// takes at once, few, so that none waits long for the others at a band's end.
+constexpr int kBand = 8, kBlock = 32;
 
 // Two numbers in [0, 1) that neighbouring pixels do not share (SplitMix64, core/random.h).
 glm::dvec2 turnOf(int x, int y, std::uint64_t purpose) {
@@ -295,19 +298,22 @@ glm::dvec4 LightTracer::surfaceLight(const SceneHit& hit, const glm::dvec3& dire
 }
 
 void traceLight(const SceneTracer& scene, const TracedFrame& frame, const TracedLightSettings& settings,
-                TracedPlanes& planes, TraceCounts& counts) {
+                TracedPlanes& planes, TraceCounts& counts, const std::function<void()>& watch) {
   const auto pixels = static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height);
   planes.visibility.assign(settings.trace.shadows > 0 ? pixels : 0, 0);
   planes.occlusion.assign(settings.trace.occlusion > 0 ? pixels : 0, 0);
   planes.light.assign(settings.trace.light() ? pixels : 0, glm::vec4(0, 0, 0, 1));
   const bvh::ViewRays rays(frame.view, scene.primitives().origin);
   const PixelTracer tracer(scene, frame, settings);
-  tbb::combinable<TraceCounts> parts;
-  tbb::parallel_for(tbb::blocked_range<int>(0, frame.height, 1), [&](const auto& rows) {
+  struct Part {
     RayScratch scratch;
-    TraceCounts& part = parts.local();
-    for (int row = rows.begin(); row < rows.end(); ++row) {
-      for (int column = 0; column < frame.width; ++column) {
+    TraceCounts counts;
+  };
+  tbb::combinable<Part> parts;
+  const auto traceBlock = [&](const tbb::blocked_range2d<int>& block) {
+    auto& [scratch, part] = parts.local();
+    for (int row = block.rows().begin(); row < block.rows().end(); ++row) {
+      for (int column = block.cols().begin(); column < block.cols().end(); ++column) {
         const int x = frame.x + column, y = frame.y + row;
         const auto ray = rays.through(glm::dvec2(x, y) + 0.5 + glm::dvec2(frame.sampleShift));
         const SceneHit hit = scene.cast({ray.origin, ray.direction, ray.start}, scratch, part);
@@ -317,8 +323,14 @@ void traceLight(const SceneTracer& scene, const TracedFrame& frame, const Traced
         tracer.trace(hit, ray.direction, x, y, at, planes, scratch, part);
       }
     }
-  });
-  parts.combine_each([&](const TraceCounts& part) { counts.add(part); });
+  };
+  for (int top = 0; top < frame.height; top += kBand) {
+    if (watch) watch();
+    const int end = std::min(top + kBand, frame.height);
+    tbb::parallel_for(tbb::blocked_range2d<int>(top, end, 1, 0, frame.width, kBlock), traceBlock,
+                      tbb::simple_partitioner{});
+  }
+  parts.combine_each([&](const Part& part) { counts.add(part.counts); });
 }
 
 }  // namespace meniscus

@@ -15,6 +15,7 @@
 // are.
 
 #include <cstdint>
+#include <functional>
 #include <glm/vec4.hpp>
 #include <vector>
 
@@ -50,9 +51,10 @@ struct TracedPlanes {
   std::vector<glm::vec4> light;
 };
 
-/// Planes that the settings do not ask for stay empty.
+/// Planes that the settings do not ask for stay empty. `watch` is called on this thread now and then; what it
+/// throws ends the tracing.
 void traceLight(const bvh::SceneTracer& scene, const TracedFrame& frame, const TracedLightSettings& settings,
-                TracedPlanes& planes, bvh::TraceCounts& counts);
+                TracedPlanes& planes, bvh::TraceCounts& counts, const std::function<void()>& watch = {});
 
 /// Of unpolarized light that meets a wall: the share that is mirrored. cosine: of the angle to the normal,
 /// 0..1; ratio: index of refraction where the light comes from over that of the other side. 1 beyond the

@@ -118,9 +118,10 @@ struct Frame {
   ShadowMap shadowMap;  // without depth if there are no shadows
   bool occlusion = false;
   UnsharpKernel unsharp = {};
-  int margin = 0;            // of a tile: how far its pixels' effects look [pixels]
-  bool translucent = false;  // surfaces are laid over the rest, layer by layer
-  bool traced = false;       // some of the light
+  int margin = 0;                    // of a tile: how far its pixels' effects look [pixels]
+  bool translucent = false;          // surfaces are laid over the rest, layer by layer
+  bool traced = false;               // some of the light
+  std::function<void()> watch = {};  // is called now and then while a pass takes long; may throw
 };
 
 // What becomes of the surfaces of a scene.
@@ -230,7 +231,7 @@ struct Renderer::Impl {
     SurfaceReader* const reader = effects.processor ? &surfaceReader : nullptr;
     LightRefs light;
     if (frame.traced) {
-      tracedLight.add(graph, frame.view, tile, sampleShift, light);
+      tracedLight.add(graph, frame.view, tile, sampleShift, light, frame.watch);
     } else {
       graph.leaveOut("pass trace", "no rays are traced");
     }
@@ -536,7 +537,12 @@ void Renderer::renderPicture(const View& view, const Lighting& lighting, const B
   std::vector<std::byte> band, colors;
   LayerTexels texels;
   const double pixels = static_cast<double>(view.size.width) * view.size.height;
-  double drawn = 0;
+  double drawn = 0, told = 0;  // shares of the picture
+  const auto tell = [&](double share) {
+    told = share;
+    if (progress) progress(share);
+  };
+  frame.watch = [&] { tell(told); };
   for (int top = view.size.height; top > 0; top -= tileSize.height) {
     const int height = std::min(tileSize.height, top);
     band.resize(rowBytes * static_cast<std::size_t>(height));
@@ -551,9 +557,7 @@ void Renderer::renderPicture(const View& view, const Lighting& lighting, const B
       {
         Stopwatch watch(r.stats.drawMs);
         const double share = static_cast<double>(tile.width) * tile.height / pixels;
-        const auto drawnOfTile = [&](double done) {
-          if (progress) progress(drawn + share * done);
-        };
+        const auto drawnOfTile = [&](double done) { tell(drawn + share * done); };
         if (color) {
           r.drawTile(frame, tile, *picture, texels, drawnOfTile);
         } else {
@@ -576,7 +580,7 @@ void Renderer::renderPicture(const View& view, const Lighting& lighting, const B
     for (int y = height; y-- > 0;) {
       sink.writeRows(std::span(band).subspan(rowBytes * static_cast<std::size_t>(y), rowBytes));
     }
-    if (progress) progress(drawn);
+    tell(drawn);
   }
 }
 

@@ -26,7 +26,7 @@ void TracedLight::takeStats(std::vector<SurfaceStats>& stats) {
 }
 
 void TracedLight::add(FrameGraph& graph, const View& view, const Tile& tile, glm::vec2 sampleShift,
-                      LightRefs& light) {
+                      LightRefs& light, const std::function<void()>& watch) {
   using gl::TextureFormat;
   std::vector<FrameGraph::Attachment> targets;
   const auto create = [&](const char* name, TextureFormat format) {
@@ -39,9 +39,9 @@ void TracedLight::add(FrameGraph& graph, const View& view, const Tile& tile, glm
   if (settings_.trace.light()) light.traced = create("traced light", TextureFormat::rgba32f);
   const LightRefs refs = light;
   const TracedFrame frame{view, tile.x, tile.y, tile.width, tile.height, sampleShift, sample_, samples_};
-  graph.addPass("trace", {}, targets, [this, refs, frame](const PassContext& context) {
+  graph.addPass("trace", {}, targets, [this, refs, frame, watch](const PassContext& context) {
     if (!scene_) scene_.emplace(primitives_);
-    traceLight(*scene_, frame, settings_, planes_, counts_);
+    traceLight(*scene_, frame, settings_, planes_, counts_, watch);
     const auto write = [&](TextureRef ref, const void* data) {
       context.texture(ref).write(frame.width, frame.height, data, 0, 0);
     };

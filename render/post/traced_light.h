@@ -23,8 +23,10 @@ class TracedLight {
     sample_ = sample;
     samples_ = samples;
   }
-  /// Adds the pass and the planes that the settings ask for. `view` and this must outlive the graph.
-  void add(FrameGraph& graph, const View& view, const Tile& tile, glm::vec2 sampleShift, LightRefs& light);
+  /// Adds the pass and the planes that the settings ask for. `view` and this must outlive the graph. `watch`
+  /// is called while rays are traced; what it throws ends that.
+  void add(FrameGraph& graph, const View& view, const Tile& tile, glm::vec2 sampleShift, LightRefs& light,
+           const std::function<void()>& watch);
   bool shadows() const { return settings_.trace.shadows > 0; }
   bool occlusion() const { return settings_.trace.occlusion > 0; }
   /// Rays since the last call, if there were any, as "traced rays".

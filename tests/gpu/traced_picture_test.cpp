@@ -113,6 +113,34 @@ TEST_F(TracedPicture, AnyTilesGiveTheSameBytes) {
   EXPECT_NE(picture(scene.primitives, view, plain), whole);
 }
 
+// What `progress` throws ends the picture while its rays are traced; the next one is whole.
+TEST_F(TracedPicture, CanBeEnded) {
+  const test::SurfaceScene scene = test::randomScene(40, 3);
+  const View view = viewOf(scene, {70, 50});
+  RenderSettings settings = test::withSamples(1);
+  settings.trace.occlusion = 4;
+  Renderer renderer;
+  renderer.setPrimitives(scene.primitives);
+  struct Ended {};
+  int looks = 0;
+  test::MemorySink none, sink;
+  EXPECT_THROW(renderer.renderPicture(view, {}, {}, settings, {PixelFormat::rgba8}, none,
+                                      [&](double share) {
+                                        EXPECT_EQ(share, 0);
+                                        if (++looks == 3) throw Ended{};
+                                      }),
+               Ended);
+  EXPECT_EQ(looks, 3);
+  EXPECT_TRUE(none.bytes.empty());
+  double before = 0;
+  renderer.renderPicture(view, {}, {}, settings, {PixelFormat::rgba8}, sink, [&](double share) {
+    EXPECT_GE(share, before);
+    before = share;
+  });
+  EXPECT_EQ(before, 1);
+  EXPECT_EQ(sink.bytes, picture(scene.primitives, view, settings));
+}
+
 TEST_F(TracedPicture, TracedPassesReplaceMaps) {
   const test::SurfaceScene scene = test::randomScene(40, 3);
   Renderer renderer;

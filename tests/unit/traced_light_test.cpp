@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <thread>
 
 #include "core/bvh/view_ray.h"
 #include "core/generated_scenes.h"
@@ -301,6 +303,36 @@ TEST(TracedLight, GlassNeitherMakesNorLosesLight) {
       }
     }
   }
+}
+
+// Whoever no longer wants the picture says so between bands of rows.
+TEST(TracedLight, IsEndedByItsWatch) {
+  const auto primitives = test::randomSpheres(200, 3);
+  const View view = test::viewOf(*primitives, {32, 64});
+  const SceneTracer scene(primitives);
+  TracedLightSettings settings;
+  settings.trace.occlusion = 1;
+  TracedPlanes whole, part;
+  TraceCounts counts;
+  int looks = 0;
+  const auto caller = std::this_thread::get_id();
+  traceLight(scene, {view, 0, 0, 32, 64}, settings, whole, counts, [&] {
+    EXPECT_EQ(std::this_thread::get_id(), caller);
+    ++looks;
+  });
+  EXPECT_GE(looks, 4);
+  struct Ended {};
+  const auto endAtHalf = [&, left = looks / 2]() mutable {
+    if (left-- == 0) throw Ended{};
+  };
+  EXPECT_THROW(traceLight(scene, {view, 0, 0, 32, 64}, settings, part, counts, endAtHalf), Ended);
+  ASSERT_EQ(part.occlusion.size(), whole.occlusion.size());
+  const auto middle = static_cast<std::ptrdiff_t>(whole.occlusion.size() / 2);
+  EXPECT_TRUE(std::equal(part.occlusion.begin(), part.occlusion.begin() + middle, whole.occlusion.begin()));
+  EXPECT_TRUE(std::all_of(part.occlusion.begin() + middle, part.occlusion.end(),
+                          [](std::uint32_t v) { return v == 0; }));
+  EXPECT_TRUE(std::any_of(whole.occlusion.begin() + middle, whole.occlusion.end(),
+                          [](std::uint32_t v) { return v != 0; }));
 }
 
 // Nothing convex hides itself, from any of its points: no acne.
