@@ -64,8 +64,7 @@ double SceneTracer::distance(const SceneRay& ray, bool surfaces, RayScratch& scr
 
 bool SceneTracer::blocked(const SceneRay& ray, bool surfaces, RayScratch& scratch,
                           TraceCounts& counts) const {
-  if (solids_.distance({ray.origin, ray.direction, ray.from, ray.to}, ray.start.solid, counts) < kInfinity)
-    return true;
+  if (solids_.blocked({ray.origin, ray.direction, ray.from, ray.to}, ray.start.solid, counts)) return true;
   if (!surfaces) return false;
   for (std::size_t i = 0; i < surfaces_.size(); ++i)
     if (surfaces_[i]->tracer->blocked(of(ray, i, ray.to), scratch, counts)) return true;

@@ -128,17 +128,26 @@ SolidTracer::Found SolidTracer::meet(std::uint32_t solid, const FieldRay& ray) c
   return {};
 }
 
-double SolidTracer::distance(const FieldRay& ray, std::uint32_t except, TraceCounts& counts) const {
+double SolidTracer::distance(const FieldRay& ray, std::uint32_t except, bool any, TraceCounts& counts) const {
   double nearest = kInfinity;
   walk(tree_, WalkRay(ray.origin, ray.direction), ray.from, ray.to, counts.nodes,
        [&](const Node& node, double, double, double limit) {
          for (std::uint32_t k = 0; k < node.count; ++k) {
            const std::uint32_t solid = solids_[tree_.members[node.first + k]];
            if (solid != except) nearest = std::min(nearest, meet(solid, ray).distance);
+           if (any && nearest < kInfinity) return -kInfinity;
          }
          return std::min(limit, nearest);
        });
   return nearest;
+}
+
+double SolidTracer::distance(const FieldRay& ray, std::uint32_t except, TraceCounts& counts) const {
+  return distance(ray, except, false, counts);
+}
+
+bool SolidTracer::blocked(const FieldRay& ray, std::uint32_t except, TraceCounts& counts) const {
+  return distance(ray, except, true, counts) < kInfinity;
 }
 
 SolidHit SolidTracer::cast(const FieldRay& ray, std::uint32_t except, TraceCounts& counts) const {

@@ -30,6 +30,8 @@ class SolidTracer {
   SolidHit cast(const FieldRay& ray, std::uint32_t except, TraceCounts& counts) const;
   /// How far away the first of them is, no more.
   double distance(const FieldRay& ray, std::uint32_t except, TraceCounts& counts) const;
+  /// Whether there is one: any.
+  bool blocked(const FieldRay& ray, std::uint32_t except, TraceCounts& counts) const;
 
  private:
   struct Found {
@@ -37,6 +39,7 @@ class SolidTracer {
     glm::dvec3 normal{0.0};
     bool fromInside = false;
   };
+  double distance(const FieldRay& ray, std::uint32_t except, bool any, TraceCounts& counts) const;
   Found meet(std::uint32_t solid, const FieldRay& ray) const;
   Found meetTriangle(const TriangleCorners& corners, const FieldRay& ray) const;
   void describe(const FieldRay& ray, SolidHit& hit) const;

@@ -70,6 +70,26 @@ TEST(SceneTracer, SolidsAndSurfacesAreMetWhereTheTruthSays) {
   }
 }
 
+// Any blocker will do, and is found sooner than the nearest.
+TEST(SceneTracer, WhatIsBlockedHasADistance) {
+  for (const auto& primitives : {test::randomChain(200, 3), test::randomEllipsoids(200, 4, 0.3)}) {
+    const SceneTracer scene(primitives);
+    test::Random random(5);
+    RayScratch scratch;
+    TraceCounts any, nearest;
+    int blocked = 0, free = 0;
+    for (int i = 0; i < 2000; ++i) {
+      const SceneRay ray{random.inBox(10), random.direction(), 0, i % 2 == 0 ? bvh::kInfinity : 3.0};
+      const bool hides = scene.blocked(ray, true, scratch, any);
+      EXPECT_EQ(hides, scene.distance(ray, true, scratch, nearest) < bvh::kInfinity);
+      ++(hides ? blocked : free);
+    }
+    EXPECT_GT(blocked, 200);
+    EXPECT_GT(free, 200);
+    EXPECT_LT(any.nodes, nearest.nodes);
+  }
+}
+
 // A square in the plane y = 0, seen and lit from above.
 void addFloor(Primitives& primitives, float half) {
   for (const glm::vec2 corner : {glm::vec2(-1, -1), glm::vec2(-1, 1), glm::vec2(1, 1), glm::vec2(1, -1)})
