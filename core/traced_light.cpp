@@ -84,12 +84,8 @@ glm::dvec3 towards(const DirectionalLight& light) {
 }
 
 glm::dvec3 linearLight(std::uint32_t color) {
-  static const std::array<double, 256> kTable = [] {
-    std::array<double, 256> table{};
-    for (std::size_t i = 0; i < table.size(); ++i) table[i] = linearFromSrgb(static_cast<double>(i) / 255);
-    return table;
-  }();
-  return {kTable[color >> 16 & 255u], kTable[color >> 8 & 255u], kTable[color & 255u]};
+  const std::array<double, 256>& linear = linearOfBytes();
+  return {linear[color >> 16 & 255u], linear[color >> 8 & 255u], linear[color & 255u]};
 }
 
 /// Computes what rays from one pixel's hit find.

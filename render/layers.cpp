@@ -11,15 +11,6 @@ namespace meniscus {
 
 namespace {
 
-// For each value of 8 bits.
-std::array<float, 256> linearLight() {
-  std::array<float, 256> table{};
-  for (std::size_t i = 0; i < table.size(); ++i) {
-    table[i] = static_cast<float>(linearFromSrgb(static_cast<double>(i) / 255.0));
-  }
-  return table;
-}
-
 // Writes the values of one pixel after the other.
 class PixelCursor {
  public:
@@ -66,7 +57,7 @@ void readLayers(const FrameGraph& graph, const Layers& layers, const GBufferRefs
 
 void storeLayers(const PixelLayout& layout, const View& view, const Tile& tile, const LayerTexels& texels,
                  const std::vector<std::byte>& color, std::byte* band) {
-  static const std::array<float, 256> linear = linearLight();
+  const std::array<double, 256>& linear = linearOfBytes();
   const Layers& layers = layout.layers;
   const std::size_t pixelBytes = bytesPerPixel(layout), colorBytes = bytesPerPixel(layout.format);
   std::size_t i = 0;
@@ -77,7 +68,7 @@ void storeLayers(const PixelLayout& layout, const View& view, const Tile& tile, 
       PixelCursor pixel(band + pixelBytes * (row + static_cast<std::size_t>(x)));
       if (layers.color) pixel.put(color.data() + colorBytes * i, colorBytes);
       if (layers.albedo) {
-        for (std::size_t c = 0; c < 3; ++c) pixel.put(linear[texels.albedo[4 * i + c]]);
+        for (std::size_t c = 0; c < 3; ++c) pixel.put(static_cast<float>(linear[texels.albedo[4 * i + c]]));
       }
       if (layers.normal) {
         // A miss is cleared to zero; no normal towards the viewer is stored so.

@@ -10,7 +10,7 @@ namespace meniscus {
 
 /// With an alpha, by which it is not multiplied.
 inline glm::vec4 linearColor(Rgb color, double alpha) {
-  const auto channel = [&](int shift) { return linearFromSrgb(((color >> shift) & 0xFF) / 255.0); };
+  const auto channel = [&](int shift) { return linearOfBytes()[color >> shift & 0xFFu]; };
   return glm::vec4(glm::dvec4(channel(16), channel(8), channel(0), alpha));
 }
 

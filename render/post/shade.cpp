@@ -28,9 +28,7 @@ glm::vec4 towardsLight(const DirectionalLight& light) {
 
 std::array<glm::vec4, 256> linearTable() {
   std::array<glm::vec4, 256> table{};
-  for (std::size_t i = 0; i < table.size(); ++i) {
-    table[i].x = static_cast<float>(linearFromSrgb(static_cast<double>(i) / 255.0));
-  }
+  for (std::size_t i = 0; i < table.size(); ++i) table[i].x = static_cast<float>(linearOfBytes()[i]);
   return table;
 }
 
