@@ -16,6 +16,8 @@
 
 namespace meniscus::bvh {
 
+/// Pictures are drawn with fitted trees; the others are what the paper compares them with, and serve its
+/// tables (docs/measured/bvh.md) and as a second opinion in tests.
 enum class Structure : std::uint8_t {
   classical,  ///< each ball in one leaf, which does not know the others around
   split,      ///< the same; leaves have "split metaballs", too: all that overlap one of their own (§4)
@@ -34,7 +36,10 @@ struct TreeSettings {
 inline constexpr std::size_t kMostToDiscardFrom = 64;
 
 /// As a share of the field's extent: how far outside of a cell the field is still that of its members. Nodes'
-/// boxes are grown by half of it, so that neither float32 coordinates nor a walk in float32 lose anything.
+/// boxes are grown by half of it, which is more than rounding moves float32 coordinates, and rays in float32
+/// whose coordinates are not much larger than the field's. The shader's, which begin on the view's axis, are
+/// if that passes the field at more than about ten of its extents (half of the slack is then three
+/// roundings): a ray may miss the rim of a cell.
 inline constexpr float kSlack = 4e-6f;
 
 struct FieldTree : Tree {
