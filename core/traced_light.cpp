@@ -11,6 +11,7 @@
 #include <glm/matrix.hpp>
 
 #include "core/bvh/view_ray.h"
+#include "core/random.h"
 #include "core/sampling.h"
 #include "core/srgb.h"
 
@@ -32,19 +33,13 @@ constexpr double kLeastWeight = 1.0 / 1024;
 // takes at once, few, so that none waits long for the others at a band's end.
 constexpr int kBand = 8, kBlock = 32;
 
-// Two numbers in [0, 1) that neighbouring pixels do not share (SplitMix64, core/random.h).
+// Two numbers in [0, 1) that neighbouring pixels do not share.
 glm::dvec2 turnOf(int x, int y, std::uint64_t purpose) {
-  std::uint64_t z =
-      (static_cast<std::uint64_t>(static_cast<std::uint32_t>(y)) << 32 | static_cast<std::uint32_t>(x)) * 4 +
-      purpose;
-  const auto next = [&] {
-    std::uint64_t v = (z += 0x9E3779B97F4A7C15u);
-    v = (v ^ (v >> 30)) * 0xBF58476D1CE4E5B9u;
-    v = (v ^ (v >> 27)) * 0x94D049BB133111EBu;
-    return static_cast<double>((v ^ (v >> 31)) >> 11) * 0x1p-53;
-  };
-  const double a = next();
-  return {a, next()};
+  const std::uint64_t pixel =
+      static_cast<std::uint64_t>(static_cast<std::uint32_t>(y)) << 32 | static_cast<std::uint32_t>(x);
+  Random random(pixel * 4 + purpose);
+  const double a = random.uniform(0, 1);
+  return {a, random.uniform(0, 1)};
 }
 
 // Point `index` of `count` of a Hammersley set, turned.
@@ -100,7 +95,7 @@ class PixelTracer {
 
   void trace(const SceneHit& hit, const glm::dvec3& direction, int x, int y, std::size_t at,
              TracedPlanes& planes, RayScratch& scratch, TraceCounts& counts) const {
-    const glm::dvec3 normal = glm::dot(hit.normal, direction) > 0 ? -hit.normal : hit.normal;
+    const glm::dvec3 normal = hit.normalAgainst(direction);
     if (settings_.trace.shadows > 0)
       planes.visibility[at] =
           static_cast<std::uint16_t>(stored(visibility(hit, normal, x, y, scratch, counts)));
@@ -217,6 +212,10 @@ glm::dvec3 LightTracer::environment(const glm::dvec3& direction) const {
   return skyLight(toView_ * direction);
 }
 
+double LightTracer::keyOn(const glm::dvec3& normal) const {
+  return std::max(glm::dot(normal, toKey_), 0.0) * settings_.lighting.key.intensity;
+}
+
 // As lit() of shaders/include/lighting.glsl.
 double LightTracer::highlight(const glm::dvec3& normal, const glm::dvec3& toEye, double key) const {
   const Lighting& l = settings_.lighting;
@@ -229,8 +228,8 @@ double LightTracer::highlight(const glm::dvec3& normal, const glm::dvec3& toEye,
 glm::dvec3 LightTracer::shade(const SceneHit& hit, const glm::dvec3& direction, RayScratch& scratch,
                               TraceCounts& counts) const {
   const Lighting& l = settings_.lighting;
-  const glm::dvec3 normal = glm::dot(hit.normal, direction) > 0 ? -hit.normal : hit.normal;
-  double key = std::max(glm::dot(normal, toKey_), 0.0) * l.key.intensity;
+  const glm::dvec3 normal = hit.normalAgainst(direction);
+  double key = keyOn(normal);
   const bool shadows = settings_.trace.shadows > 0 && settings_.shadows.mode != ShadowMode::off;
   if (key > 0 && shadows &&
       scene_.blocked({hit.point, toKey_, 0, bvh::kInfinity, hit.outward()}, settings_.trace.refract == 0,
@@ -242,7 +241,7 @@ glm::dvec3 LightTracer::shade(const SceneHit& hit, const glm::dvec3& direction, 
 
 glm::dvec4 LightTracer::split(const SceneHit& hit, const glm::dvec3& direction, const Bounces& left,
                               RayScratch& scratch, TraceCounts& counts) const {
-  const glm::dvec3 normal = glm::dot(hit.normal, direction) > 0 ? -hit.normal : hit.normal;
+  const glm::dvec3 normal = hit.normalAgainst(direction);
   const double cosine = std::min(-glm::dot(direction, normal), 1.0);
   const double ratio = hit.fromInside ? settings_.trace.index : 1 / settings_.trace.index;
   const bool glass = settings_.trace.refract > 0;
@@ -288,9 +287,8 @@ glm::dvec4 LightTracer::surfaceLight(const SceneHit& hit, const glm::dvec3& dire
       split(hit, direction, {settings_.trace.reflect, settings_.trace.refract, 1}, scratch, counts);
   if (settings_.trace.refract == 0) return light;
   // Glass has no light of its own but the highlight.
-  const glm::dvec3 normal = glm::dot(hit.normal, direction) > 0 ? -hit.normal : hit.normal;
-  const double key = std::max(glm::dot(normal, toKey_), 0.0) * settings_.lighting.key.intensity;
-  return light + glm::dvec4(glm::dvec3(highlight(normal, -direction, key)), 0);
+  const glm::dvec3 normal = hit.normalAgainst(direction);
+  return light + glm::dvec4(glm::dvec3(highlight(normal, -direction, keyOn(normal))), 0);
 }
 
 void traceLight(const SceneTracer& scene, const TracedFrame& frame, const TracedLightSettings& settings,

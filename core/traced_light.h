@@ -92,6 +92,7 @@ class LightTracer {
   glm::dvec3 environment(const glm::dvec3& direction) const;
   glm::dvec3 shade(const bvh::SceneHit& hit, const glm::dvec3& direction, bvh::RayScratch& scratch,
                    bvh::TraceCounts& counts) const;
+  double keyOn(const glm::dvec3& normal) const;
   double highlight(const glm::dvec3& normal, const glm::dvec3& toEye, double key) const;
 
   const bvh::SceneTracer& scene_;

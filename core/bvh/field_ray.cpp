@@ -4,7 +4,6 @@
 #include <cmath>
 #include <optional>
 
-#include "core/mesh/field_sum.h"
 #include "core/shared_math.h"
 
 namespace meniscus::bvh {
@@ -338,15 +337,6 @@ double firstProjection(const Kernel& kernel, double level, const Stretch& stretc
                        RayEffort& effort) {
   return withKernel(
       kernel, [&](const auto& k) { return RootSearch(k, level, stretch, scratch, effort).projection(); });
-}
-
-double fieldOfChords(const Kernel& kernel, double level, double at, const RayScratch& scratch) {
-  double sum = -level;
-  for (const RayChord& c : scratch.chords) {
-    const double x = at - c.middle, w = (c.half2 - x * x) * c.inverse2;
-    if (w > 0) sum += c.coefficient * mesh::fastKernel(kernel, w);
-  }
-  return sum;
 }
 
 }  // namespace meniscus::bvh

@@ -79,7 +79,4 @@ double firstCrossing(const Kernel& kernel, double level, const Stretch& stretch,
 double firstProjection(const Kernel& kernel, double level, const Stretch& stretch, RayScratch& scratch,
                        RayEffort& effort);
 
-/// F at a place, of the chords in the scratch.
-double fieldOfChords(const Kernel& kernel, double level, double at, const RayScratch& scratch);
-
 }  // namespace meniscus::bvh

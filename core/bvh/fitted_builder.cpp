@@ -109,8 +109,8 @@ class FittedBuilder {
  public:
   FittedBuilder(const MetaballField& field, const TreeSettings& settings, float slack)
       : settings_(settings), slack_(slack), shares_(field) {
-    for (const Metaball& ball : field.balls)
-      box_.add({ball.center - ball.support, ball.center + ball.support});
+    const FieldBox supports = supportBox(field);
+    box_ = {glm::vec3(supports.low), glm::vec3(supports.high)};
     balls_ = placesOf(field, box_);
   }
 

@@ -1,6 +1,7 @@
 #pragma once
 // Rays from anywhere through a whole scene: its surfaces, each with a fitted tree, and its solids.
 
+#include <glm/geometric.hpp>
 #include <memory>
 #include <optional>
 
@@ -32,6 +33,10 @@ struct SceneHit {
   std::uint32_t color = 0, id = 0;  ///< 0xRRGGBB, sRGB
   std::uint32_t surface = kNoSurface, solid = kNoSolid;
   explicit operator bool() const { return distance < kInfinity; }
+  /// Of a ray's direction: the normal towards where the ray came from.
+  glm::dvec3 normalAgainst(const glm::dvec3& direction) const {
+    return glm::dot(normal, direction) > 0 ? -normal : normal;
+  }
   /// Of rays that leave on this side of what was hit: towards where the ray came from.
   RayStart outward() const {
     if (surface == kNoSurface) return {solid, kNoSurface, Side::unknown};
