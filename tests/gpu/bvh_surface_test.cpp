@@ -74,68 +74,6 @@ TEST_F(BvhSurface, TwoHundredCoincidentBalls) {
   }
 }
 
-TEST_F(BvhSurface, AThousandBallsAlongOneRay) {
-  const auto [scene, view] = test::ballsAlongOneRay();
-  expectExact(judge(scene, view, bvh()));
-}
-
-TEST_F(BvhSurface, ALatticeSeenAlongAnAxis) {
-  const auto [scene, view] = test::latticeAlongAxis();
-  expectExact(judge(scene, view, bvh()));
-  expectExact(judge(scene, latticeInPerspective(scene), bvh()));
-}
-
-TEST_F(BvhSurface, NegativeBallsHollowTheSurface) {
-  for (const Kernel kernel : {Kernel{}, Kernel{KernelShape::quartic}}) {
-    const test::SurfaceScene scene(test::randomField(kernel, 0.3, 80, 4, 3, 11));
-    for (const Projection projection : kBoth)
-      expectExact(judge(scene, viewOf(scene, {80, 60}, projection), bvh()));
-  }
-  const test::SurfaceView s = test::insideOfCavity();
-  expectExact(judge(s.scene, s.view, bvh()));
-}
-
-TEST_F(BvhSurface, CameraInsideBallsAndInsideTheSurface) {
-  const test::SurfaceScene scene = test::randomScene(200, 5);
-  int i = 0;
-  for (const View& view : viewsFromInside(scene)) {
-    SCOPED_TRACE(i);
-    expectExact(judge(scene, view, bvh(), "inside" + std::to_string(i++)));
-  }
-}
-
-TEST_F(BvhSurface, SupportsFromAThousandthToAThousand) {
-  const test::SurfaceScene scene = test::manyScales();
-  for (const double radius : {1000.0, 10.0, 0.1, 0.001}) {
-    SCOPED_TRACE(radius);
-    expectExact(judge(scene, viewOfScale(scene, radius), bvh(), "radius" + std::to_string(radius)));
-  }
-}
-
-TEST_F(BvhSurface, FarAwayAndAtWideAndNarrowAngles) {
-  test::SurfaceScene scene = test::randomScene(150, 3);
-  expectExact(judge(scene, viewFromAfar(scene, {96, 72}), bvh()));
-  for (const double degrees : {1.0, 150.0}) expectExact(judge(scene, viewOfAngle(scene, degrees), bvh()));
-  scene.primitives->origin = {1e6, -1e6, 1e6 + 0.123456789};
-  expectExact(judge(scene, viewOf(scene, {96, 72}), bvh()));
-}
-
-TEST_F(BvhSurface, LevelsNearZeroAndNearTheMaximum) {
-  for (const double level : {1e-2, 1e-4, 1e-6}) {
-    test::SurfaceScene scene = test::randomScene(60, 6);
-    scene.primitives->surfaces[0].level = level;
-    SCOPED_TRACE(level);
-    expectExact(judge(scene, viewOf(scene, {96, 72}), bvh(), "level" + std::to_string(level)));
-  }
-  for (const unsigned balls : {1u, 2u}) {
-    for (const double below : {1e-2, 1e-3, 1e-4}) {
-      const test::SurfaceView s = test::nearMaximum(balls, below);
-      SCOPED_TRACE(below);
-      expectExact(judge(s.scene, s.view, bvh(), "below" + std::to_string(below)));
-    }
-  }
-}
-
 // Kernels of degree 32, whose loops a software driver may end for a whole group of pixels, and lone balls at
 // levels next to 0 and next to the most that they reach.
 TEST_F(BvhSurface, StiffScenes) {
@@ -164,18 +102,10 @@ TEST_F(BvhSurface, AsManyBallsInACellAsTheKernelAllows) {
   }
 }
 
-TEST_F(BvhSurface, TangentRaysMissAndEnd) {
-  expectTangentRaysMiss(bvh());
-}
-
 TEST_F(BvhSurface, SpheresAndTwoSurfacesHideEachOther) {
   const test::SurfaceScene scene = test::twoSurfaces();
   expectExact(judge(scene, viewOf(scene, {96, 72}), bvh()));
   expectSpheresAndSurfacesHideEachOther(bvh(), QuadricMethod::automatic, 1e-5f);
-}
-
-TEST_F(BvhSurface, AnyTilesOfTheTargetGiveTheSameBytes) {
-  expectAnyTilesGiveTheSameBytes(bvh());
 }
 
 // Rays that dip into the surface between two projections are missed, and nothing else.

@@ -56,80 +56,10 @@ TEST_F(Newton, TwoHundredCoincidentBalls) {
     expectExact(judge(scene, viewOf(scene, {24, 18}, projection), newton()));
 }
 
-TEST_F(Newton, AThousandBallsAlongOneRay) {
-  const test::SurfaceView s = test::ballsAlongOneRay();
-  expectExact(judge(s.scene, s.view, newton()));
-}
-
-TEST_F(Newton, ALatticeSeenAlongAnAxis) {
-  const test::SurfaceView s = test::latticeAlongAxis();
-  expectExact(judge(s.scene, s.view, newton()));
-  expectExact(judge(s.scene, latticeInPerspective(s.scene), newton()));
-}
-
-TEST_F(Newton, NegativeBallsHollowTheSurface) {
-  for (const Kernel kernel : {Kernel{}, Kernel{KernelShape::quartic}}) {
-    const test::SurfaceScene scene(test::randomField(kernel, 0.3, 80, 4, 3, 11));
-    for (const Projection projection : kBoth)
-      expectExact(judge(scene, viewOf(scene, {80, 60}, projection), newton()));
-  }
-  const test::SurfaceView s = test::insideOfCavity();
-  expectExact(judge(s.scene, s.view, newton()));
-}
-
-TEST_F(Newton, CameraInsideBallsAndInsideTheSurface) {
-  const test::SurfaceScene scene = test::randomScene(200, 5);
-  int i = 0;
-  for (const View& view : viewsFromInside(scene)) {
-    SCOPED_TRACE(i);
-    expectExact(judge(scene, view, newton(), "inside" + std::to_string(i++)));
-  }
-}
-
-TEST_F(Newton, SupportsFromAThousandthToAThousand) {
-  const test::SurfaceScene scene = test::manyScales();
-  for (const double radius : {1000.0, 10.0, 0.1, 0.001}) {
-    SCOPED_TRACE(radius);
-    expectExact(judge(scene, viewOfScale(scene, radius), newton(), "radius" + std::to_string(radius)));
-  }
-}
-
-TEST_F(Newton, FarAwayAndAtWideAndNarrowAngles) {
-  test::SurfaceScene scene = test::randomScene(150, 3);
-  expectExact(judge(scene, viewFromAfar(scene, {96, 72}), newton()));
-  for (const double degrees : {1.0, 150.0}) expectExact(judge(scene, viewOfAngle(scene, degrees), newton()));
-  scene.primitives->origin = {1e6, -1e6, 1e6 + 0.123456789};
-  expectExact(judge(scene, viewOf(scene, {96, 72}), newton()));
-}
-
-TEST_F(Newton, LevelsNearZeroAndNearTheMaximum) {
-  for (const double level : {1e-2, 1e-4, 1e-6}) {
-    test::SurfaceScene scene = test::randomScene(60, 6);
-    scene.primitives->surfaces[0].level = level;
-    SCOPED_TRACE(level);
-    expectExact(judge(scene, viewOf(scene, {96, 72}), newton(), "level" + std::to_string(level)));
-  }
-  for (const unsigned balls : {1u, 2u}) {
-    for (const double below : {1e-2, 1e-3, 1e-4}) {
-      const test::SurfaceView s = test::nearMaximum(balls, below);
-      SCOPED_TRACE(below);
-      expectExact(judge(s.scene, s.view, newton(), "below" + std::to_string(below)));
-    }
-  }
-}
-
-TEST_F(Newton, TangentRaysMissAndEnd) {
-  expectTangentRaysMiss(newton());
-}
-
 TEST_F(Newton, SpheresAndTwoSurfacesHideEachOther) {
   const test::SurfaceScene scene = test::twoSurfaces();
   expectExact(judge(scene, viewOf(scene, {96, 72}), newton()));
   expectSpheresAndSurfacesHideEachOther(newton(), QuadricMethod::automatic, 1e-5f);
-}
-
-TEST_F(Newton, AnyTilesOfTheTargetGiveTheSameBytes) {
-  expectAnyTilesGiveTheSameBytes(newton());
 }
 
 // The poster's iteration: pixels are lost, counted, and shown.
