@@ -2,6 +2,7 @@
 // The one interface of all ways to draw a metaball surface, and the list of those there are.
 
 #include <array>
+#include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <map>
@@ -57,6 +58,9 @@ class SurfaceMethod {
   virtual SurfaceStats takeStats() = 0;
   /// On the GPU, alive.
   virtual std::vector<ResourceStats> buffers() const = 0;
+  /// Of what the balls take or are made into (hulls, trees, triangles), on the GPU or, if the processor casts
+  /// the rays, in main memory; not of what pixels take.
+  virtual std::uint64_t bytesOfBalls() const = 0;
 };
 
 /// What a method can be told, by name (--surface-option NAME=VALUE, and sweeps).

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/error.h"
 
@@ -83,7 +84,14 @@ SurfaceLayerRefs SurfacePasses::addLayers(FrameGraph& graph, ShaderLibrary& shad
 }
 
 void SurfacePasses::takeStats(std::vector<SurfaceStats>& stats) {
-  for (const auto& method : methods_) addStats(stats, method->takeStats());
+  for (std::size_t i = 0; i < methods_.size(); ++i) {
+    SurfaceStats some = methods_[i]->takeStats();
+    if (const std::size_t balls = primitives_->surfaces[i].balls.size(); balls > 0)
+      some.details.emplace_back(
+          "most bytes per ball",
+          std::round(static_cast<double>(methods_[i]->bytesOfBalls()) / static_cast<double>(balls)));
+    addStats(stats, some);
+  }
 }
 
 std::vector<ResourceStats> SurfacePasses::buffers() const {

@@ -17,6 +17,8 @@ class FieldTiles {
   /// As QuadricTiles::cast().
   void cast(const TileTarget& target, const PlaneChannels& channels, Planes& planes);
   const TileLists& lists() const { return lists_; }
+  /// Of memory.
+  std::uint64_t bytesOfLists() const { return lists_.bytes() + whole_.bytes(); }
   int builds() const { return builds_; }
   /// Of all calls since the last one.
   FieldCounts takeCounts();

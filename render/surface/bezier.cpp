@@ -81,6 +81,7 @@ class Bezier : public SurfaceMethod {
   void addPasses(FrameGraph& graph, ShaderLibrary& shaders, const SurfaceTarget& target) override;
   SurfaceStats takeStats() override { return statistics_.take(); }
   std::vector<ResourceStats> buffers() const override;
+  std::uint64_t bytesOfBalls() const override;
 
  private:
   // What is the same for all regions of a target.
@@ -482,12 +483,16 @@ void Bezier::shade(Frame& frame, const Region& region) {
   glDisable(GL_DEPTH_TEST);
 }
 
+std::uint64_t Bezier::bytesOfBalls() const {
+  return balls_.bytes() + ballTexture_.bytes();
+}
+
 std::vector<ResourceStats> Bezier::buffers() const {
   std::vector<ResourceStats> out;
   const auto add = [&](const char* name, std::uint64_t bytes) {
     if (bytes > 0) out.push_back({name, bytes});
   };
-  add("surface: balls", balls_.bytes() + ballTexture_.bytes());
+  add("surface: balls", bytesOfBalls());
   add("surface: instances", instances_.bytes());
   add("surface: lists", lists_.bytes());
   add("surface: pixels spilled", spilled_.bytes());

@@ -99,6 +99,7 @@ class Bvh : public SurfaceMethod {
   void addPasses(FrameGraph& graph, ShaderLibrary& shaders, const SurfaceTarget& target) override;
   SurfaceStats takeStats() override;
   std::vector<ResourceStats> buffers() const override;
+  std::uint64_t bytesOfBalls() const override;
 
  private:
   using Hits = std::vector<glm::uvec4>;
@@ -296,6 +297,11 @@ SurfaceStats Bvh::takeStats() {
                    {"most ms of construction", buildMs_}};
   answered_ = {};
   return stats;
+}
+
+std::uint64_t Bvh::bytesOfBalls() const {
+  if (tree_.nodes.empty()) return 0;
+  return nodes_.bytes() + members_.bytes() + balls_.bytes() + ballTexture_.bytes();
 }
 
 std::vector<ResourceStats> Bvh::buffers() const {

@@ -74,6 +74,7 @@ class Lists : public SurfaceMethod {
   void addPasses(FrameGraph& graph, ShaderLibrary& shaders, const SurfaceTarget& target) override;
   SurfaceStats takeStats() override { return statistics_.take(); }
   std::vector<ResourceStats> buffers() const override;
+  std::uint64_t bytesOfBalls() const override;
 
  private:
   // What is the same for all regions of a target.
@@ -259,9 +260,6 @@ void Lists::drawRegion(Frame& frame, const ScreenRect& rect) {
       std::max(statistics_.mostBytesPerPixel,
                static_cast<double>(kBytesPerPixel) +
                    static_cast<double>(kNodeBytes * mostNodes) / static_cast<double>(rect.pixels()));
-  const auto ballBytes = static_cast<double>(balls_.bytes() + ballTexture_.bytes() + orderTexture_.bytes());
-  statistics_.mostBytesPerBall =
-      std::max(statistics_.mostBytesPerBall, ballBytes / std::max(frame.balls(), 1));
 }
 
 void Lists::setUniforms(const Frame& frame, const ScreenRect& region, std::int64_t nodes, bool goOn) {
@@ -475,12 +473,16 @@ void Lists::shade(Frame& frame, const Region& region, const ScreenRect& band) {
   glDisable(GL_DEPTH_TEST);
 }
 
+std::uint64_t Lists::bytesOfBalls() const {
+  return balls_.bytes() + ballTexture_.bytes() + orderTexture_.bytes();
+}
+
 std::vector<ResourceStats> Lists::buffers() const {
   std::vector<ResourceStats> out;
   const auto add = [&](const char* name, std::uint64_t bytes) {
     if (bytes > 0) out.push_back({name, bytes});
   };
-  add("surface: balls", balls_.bytes() + ballTexture_.bytes() + orderTexture_.bytes());
+  add("surface: balls", bytesOfBalls());
   add("surface: nodes of lists", nodes_.bytes());
   add("surface: heads of lists", heads_.bytes());
   add("surface: control",

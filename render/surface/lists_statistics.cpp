@@ -24,9 +24,8 @@ SurfaceStats ListsStatistics::take() {
                    {"most balls taken by a pixel", longest},
                    {"lists put in order", unordered},
                    {"bands", bands},
-                   {"most bytes per pixel", mostBytesPerPixel},
-                   {"most bytes per ball", mostBytesPerBall}};
-  ballsInView = nodes = mostOfPixel = bands = mostBytesPerPixel = mostBytesPerBall = 0;
+                   {"most bytes per pixel", mostBytesPerPixel}};
+  ballsInView = nodes = mostOfPixel = bands = mostBytesPerPixel = 0;
   return stats;
 }
 

@@ -16,7 +16,7 @@ struct ListsStatistics {
   SurfaceStats take();
 
   RayCountCopies<ListsCounts> counts;
-  double ballsInView = 0, nodes = 0, mostOfPixel = 0, bands = 0, mostBytesPerPixel = 0, mostBytesPerBall = 0;
+  double ballsInView = 0, nodes = 0, mostOfPixel = 0, bands = 0, mostBytesPerPixel = 0;
 };
 
 }  // namespace meniscus

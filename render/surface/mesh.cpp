@@ -42,6 +42,7 @@ class Mesh : public SurfaceMethod {
   void addPasses(FrameGraph& graph, ShaderLibrary& shaders, const SurfaceTarget& target) override;
   SurfaceStats takeStats() override;
   std::vector<ResourceStats> buffers() const override;
+  std::uint64_t bytesOfBalls() const override;
 
  private:
   void upload(const SurfaceMesh& mesh);
@@ -163,6 +164,12 @@ SurfaceStats Mesh::takeStats() {
   SurfaceStats stats = std::exchange(stats_, {});
   stats.method = "mesh";
   return stats;
+}
+
+std::uint64_t Mesh::bytesOfBalls() const {
+  std::uint64_t bytes = 0;
+  for (const ResourceStats& buffer : buffers()) bytes += buffer.bytes;
+  return bytes;
 }
 
 std::vector<ResourceStats> Mesh::buffers() const {

@@ -67,6 +67,7 @@ class Newton : public SurfaceMethod {
   void addPasses(FrameGraph& graph, ShaderLibrary& shaders, const SurfaceTarget& target) override;
   SurfaceStats takeStats() override;
   std::vector<ResourceStats> buffers() const override;
+  std::uint64_t bytesOfBalls() const override;
 
  private:
   struct Frame {
@@ -329,15 +330,16 @@ SurfaceStats Newton::takeStats() {
   stats.method = plain_ ? "newton (plain)" : "newton";
   double hits = 0;
   for (const NewtonCounts& c : counts_.take(stats)) hits += c.common.hits;
-  const double balls = static_cast<double>(field_->balls.size());
-  stats.details = {
-      {"hits", hits},
-      {"hulls drawn", hullsDrawn_},
-      {"pairs that overlap", static_cast<double>(textures_.overlaps.others.size() / 2)},
-      {"most bytes per ball", static_cast<double>(textures_.bytes() + instances_.bytes()) / balls},
-      {"most bytes per pixel", mostBytesPerPixel_}};
+  stats.details = {{"hits", hits},
+                   {"hulls drawn", hullsDrawn_},
+                   {"pairs that overlap", static_cast<double>(textures_.overlaps.others.size() / 2)},
+                   {"most bytes per pixel", mostBytesPerPixel_}};
   hullsDrawn_ = mostBytesPerPixel_ = 0;
   return stats;
+}
+
+std::uint64_t Newton::bytesOfBalls() const {
+  return textures_.bytes() + instances_.bytes();
 }
 
 std::vector<ResourceStats> Newton::buffers() const {

@@ -13,18 +13,22 @@ namespace {
 class Tiles : public SurfaceMethod {
  public:
   void prepare(const MetaballField& field) override {
-    const auto clusters = std::make_shared<const tiles::Clusters>(tiles::clustersOf(field));
-    camera_.setField(&field, clusters);
-    light_.setField(&field, clusters);
+    clusters_ = std::make_shared<const tiles::Clusters>(tiles::clustersOf(field));
+    camera_.setField(&field, clusters_);
+    light_.setField(&field, clusters_);
   }
   void addPasses(FrameGraph& graph, ShaderLibrary& shaders, const SurfaceTarget& target) override;
   SurfaceStats takeStats() override;
   std::vector<ResourceStats> buffers() const override { return {}; }
+  std::uint64_t bytesOfBalls() const override {
+    return clusters_->bytes() + camera_.bytesOfLists() + light_.bytesOfLists();
+  }
 
  private:
   void draw(const PassContext& context, ShaderLibrary& shaders, tiles::FieldTiles& caster,
             const tiles::TileTarget& target, const GBufferRefs& g);
 
+  std::shared_ptr<const tiles::Clusters> clusters_;
   tiles::FieldTiles camera_, light_;  // lists of the picture outlive a shadow map
   tiles::Planes planes_;
 };

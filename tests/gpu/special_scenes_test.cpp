@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "render/surface_method.h"
 #include "tests/gpu/surface_judge.h"
 #include "tests/support/exact_field.h"
 
@@ -104,6 +105,27 @@ TEST_P(SpecialScenes, AnyTilesOfTheTargetGiveTheSameBytes) {
 INSTANTIATE_TEST_SUITE_P(Surface, SpecialScenes,
                          testing::Values(Method{"bvh", 0.05}, Method{"lists", 0.1}, Method{"newton", 0.05}),
                          [](const auto& method) { return std::string(method.param.name); });
+
+class SurfaceBytes : public test::SurfaceTest {};
+
+// Whatever the method keeps, at least where a ball is and how far it reaches; what pixels take does not
+// count.
+TEST_F(SurfaceBytes, EveryMethodSaysWhatABallTakes) {
+  const test::SurfaceScene scene = test::randomScene(1000, 1);
+  for (const SurfaceMethodInfo& method : surfaceMethods()) {
+    SCOPED_TRACE(method.name);
+    const auto bytes = [&](ImageSize size) {
+      draw(scene, viewOf(scene, size), {std::string(method.name), {}});
+      return detail("most bytes per ball");
+    };
+    const double small = bytes({24, 18}), large = bytes({96, 72});
+    EXPECT_GE(small, 16);
+    EXPECT_LE(large, 20'000);
+    if (method.name != "tiles") {
+      EXPECT_EQ(large, small);
+    }
+  }
+}
 
 }  // namespace
 }  // namespace meniscus
