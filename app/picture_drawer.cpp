@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "core/mesh/surface_mesh.h"
 #include "core/primitives.h"
+#include "io/environment_file.h"
 #include "io/image_writer.h"
 #include "io/mesh_file.h"
 
@@ -171,7 +172,21 @@ Lighting lightFor(const RenderOptions& options) {
 
 }  // namespace
 
+// Those that are there already, of the picture before, serve again.
+void PictureDrawer::readEnvironments(const Picture& picture) {
+  Environments needed;
+  const auto need = [&](const std::filesystem::path& file) {
+    if (file.empty() || needed.contains(file)) return;
+    const auto known = environments_.find(file);
+    needed[file] = known != environments_.end() ? known->second : readEnvironment(file);
+  };
+  need(picture.options.environmentFile);
+  for (const Picture& panel : picture.panels) need(panel.options.environmentFile);
+  environments_ = std::move(needed);
+}
+
 void PictureDrawer::draw(Picture picture) {
+  readEnvironments(picture);
   ImageFileOptions imageOptions;
   std::unique_ptr<ImageFile> image;
   if (!picture.output.empty()) {
@@ -212,6 +227,7 @@ void PictureDrawer::exportMesh(Picture& picture) {
 }
 
 void PictureDrawer::drawTo(Picture picture, RowSink& sink, const std::string& label) {
+  readEnvironments(picture);
   exportMesh(picture);
   TimedSink timed(sink, report_.encodeSeconds);
   report_.pictures.push_back(render(picture, timed, {PixelFormat::rgba8}, label));
@@ -232,16 +248,18 @@ PictureReport PictureDrawer::render(Picture& picture, RowSink& sink, const Pixel
   const View view = makeView(scene.camera, options.size, primitives->bounds());
   std::vector<LabelSprite> labels = drawLabels(
       scene.labels, std::max(0.01 * options.labelSize * options.size.height, 1.0), options.labelFont);
+  RenderSettings settings = settingsFor(options);
+  if (!options.environmentFile.empty())
+    settings.trace.environmentMap = environments_.at(options.environmentFile);
   progress_.start(label);
   Renderer& draw = renderer();
   show(std::move(primitives));
   draw.setLabels(std::move(labels), options.labelColors);
   draw.setPreview(layout.format == PixelFormat::rgba8 ? preview : PicturePreview{});
-  draw.renderPicture(view, lightFor(options), scene.background, settingsFor(options), layout, sink,
-                     [this](double share) {
-                       if (watch) watch();
-                       progress_.update(share);
-                     });
+  draw.renderPicture(view, lightFor(options), scene.background, settings, layout, sink, [this](double share) {
+    if (watch) watch();
+    progress_.update(share);
+  });
   return report;
 }
 

@@ -2,7 +2,9 @@
 // Draws pictures, one after the other, with one OpenGL context and its compiled shaders, which are made when
 // the first picture is ready: what is wrong with an input or an output is said without waiting for them.
 
+#include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 
 #include "app/panels.h"
@@ -40,6 +42,9 @@ class PictureDrawer {
   void finishReport();
 
  private:
+  using Environments = std::map<std::filesystem::path, std::shared_ptr<const EnvironmentMap>>;
+
+  void readEnvironments(const Picture& picture);
   void exportMesh(Picture& picture);
   PictureReport render(Picture& picture, RowSink& sink, const PixelLayout& layout, const std::string& label);
   PictureReport renderPanels(Picture& picture, RowSink& sink, const std::string& label);
@@ -51,6 +56,7 @@ class PictureDrawer {
   const RenderOptions& options_;
   RunReport& report_;
   Progress& progress_;
+  Environments environments_;                // of the picture
   std::shared_ptr<const Primitives> shown_;  // what the renderer holds
   std::unique_ptr<Context> context_;
   std::unique_ptr<Renderer> renderer_;

@@ -14,6 +14,8 @@
 #include "app/style.h"
 #include "core/error.h"
 #include "core/render_settings.h"
+#include "core/text.h"
+#include "io/environment_file.h"
 #include "io/image_writer.h"
 #include "io/mesh_file.h"
 #include "io/output_file.h"
@@ -296,6 +298,21 @@ void addLightOptions(CLI::App& app, RenderOptions& o) {
               });
 }
 
+void parseEnvironment(const std::string& option, const std::string& value, RenderOptions& o) {
+  const std::string word = lowerCase(value);
+  o.environmentFile.clear();
+  if (isEnvironmentName(value)) {
+    o.environmentFile = value;
+    o.trace.environment = Environment::map;
+  } else if (word == "sky" || word == "background") {
+    o.trace.environment = word == "sky" ? Environment::sky : Environment::background;
+  } else {
+    throw UsageError(fmt::format(
+        "{}: '{}' is neither sky nor background nor a picture's name, which ends in .hdr, .exr, .png or .jpg",
+        option, value));
+  }
+}
+
 void addTraceOptions(CLI::App& app, RenderOptions& o) {
   OptionGroup group(app, "Ray tracing");
   const auto rays = [&](const char* name, const char* help, int most, int& target) {
@@ -321,11 +338,11 @@ void addTraceOptions(CLI::App& app, RenderOptions& o) {
               "Of the glass, 1 to 10; also how strongly surfaces mirror\n"
               "[1.5]",
               [&o](auto& n, auto& v) { o.trace.index = parseNumber(n, v, 1, kMostIndex); });
-  group.value("--environment", "sky|background",
-              "What mirrors and glass show where there is nothing else [sky]", [&o](auto& n, auto& v) {
-                o.trace.environment = parseChoice<Environment>(
-                    n, v, {{"sky", Environment::sky}, {"background", Environment::background}});
-              });
+  group.value("--environment", "sky|background|FILE",
+              "What mirrors and glass show where there is nothing else; of\n"
+              "a FILE, .hdr, .exr, .png or .jpg: an equirectangular picture,\n"
+              "its middle straight ahead [sky]",
+              [&o](auto& n, auto& v) { parseEnvironment(n, v, o); });
 }
 
 void addLineOptions(CLI::App& app, RenderOptions& o) {

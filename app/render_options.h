@@ -66,6 +66,7 @@ struct RenderOptions {
   ShadowSettings shadows;
   OcclusionSettings occlusion;
   TraceSettings trace;
+  std::filesystem::path environmentFile;  ///< picture of what is all around; empty = TraceSettings says
   SilhouetteSettings lines;
   DepthUnsharpSettings depthUnsharp;
   FogSettings fog;

@@ -13,6 +13,12 @@ find_package(CURL REQUIRED)       # libcurl4-openssl-dev: what scenes refer to o
 find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)  # libxxhash-dev: names of contents; used as a header
 find_package(TBB REQUIRED)        # libtbb-dev: core/tiles on all processors
 find_package(TinyGLTF CONFIG REQUIRED)  # libtinygltf-dev: surfaces as .glb
+# libstb-dev: pictures of environments; Debian's Dear ImGui takes its font rasterizer from there, too
+find_path(STB_INCLUDE_DIR stb_image.h PATH_SUFFIXES stb REQUIRED)
+find_library(STB_LIBRARY stb REQUIRED)
+add_library(meniscus_stb INTERFACE)
+target_include_directories(meniscus_stb SYSTEM INTERFACE ${STB_INCLUDE_DIR})
+target_link_libraries(meniscus_stb INTERFACE ${STB_LIBRARY})
 find_package(hwy REQUIRED)        # libhwy-dev: vectors of the instruction set that the processor has
 
 find_path(GEMMI_INCLUDE_DIR gemmi/mmread.hpp REQUIRED)  # gemmi-dev: header only in 0.5
@@ -35,7 +41,6 @@ if(MENISCUS_VIEWER)
   # libimgui-dev: Dear ImGui with its back ends for GLFW and OpenGL 3
   find_path(IMGUI_INCLUDE_DIR imgui.h PATH_SUFFIXES imgui REQUIRED)
   find_library(IMGUI_LIBRARY imgui REQUIRED)
-  find_library(STB_LIBRARY stb REQUIRED)  # Debian's Dear ImGui takes its font rasterizer from there
   add_library(meniscus_imgui INTERFACE)
   target_include_directories(meniscus_imgui SYSTEM INTERFACE ${IMGUI_INCLUDE_DIR})
   target_link_libraries(meniscus_imgui INTERFACE ${IMGUI_LIBRARY} ${STB_LIBRARY} glfw Freetype::Freetype ${CMAKE_DL_LIBS})

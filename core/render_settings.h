@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
 
 namespace meniscus {
@@ -72,10 +73,13 @@ struct OcclusionSettings {
   bool operator==(const OcclusionSettings&) const = default;
 };
 
+class EnvironmentMap;
+
 /// What mirrors and glass show where nothing is met.
 enum class Environment : std::uint8_t {
-  sky,        ///< procedural: bright at the horizon, blue above, brown below (core/traced_light.h)
-  background  ///< the picture's background colour
+  sky,         ///< procedural: bright at the horizon, blue above, brown below (core/traced_light.h)
+  background,  ///< the picture's background colour
+  map          ///< TraceSettings::environmentMap
 };
 
 /// Rays from what is seen (core/traced_light.h): exact, and slow beside what they replace.
@@ -86,6 +90,7 @@ struct TraceSettings {
   int refract = 0;     ///< surfaces are of glass, of which a ray passes so many walls; 0 = off
   double index = 1.5;  ///< of refraction, 1..kMostIndex; also says how strongly surfaces mirror
   Environment environment = Environment::sky;
+  std::shared_ptr<const EnvironmentMap> environmentMap = {};  ///< not null if that is the environment
   bool light() const { return reflect > 0 || refract > 0; }
   bool any() const { return shadows > 0 || occlusion > 0 || light(); }
   bool operator==(const TraceSettings&) const = default;

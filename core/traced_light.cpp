@@ -11,6 +11,7 @@
 #include <glm/matrix.hpp>
 
 #include "core/bvh/view_ray.h"
+#include "core/environment_map.h"
 #include "core/random.h"
 #include "core/sampling.h"
 #include "core/srgb.h"
@@ -208,7 +209,14 @@ LightTracer::LightTracer(const SceneTracer& scene, const View& view, const Trace
       toFill_(glm::transpose(view.rotation) * towards(settings.lighting.fill)) {}
 
 glm::dvec3 LightTracer::environment(const glm::dvec3& direction) const {
-  if (settings_.trace.environment == Environment::background) return linearLight(settings_.background.color);
+  switch (settings_.trace.environment) {
+    case Environment::background:
+      return linearLight(settings_.background.color);
+    case Environment::map:
+      return settings_.trace.environmentMap->light(toView_ * direction);
+    case Environment::sky:
+      break;
+  }
   return skyLight(toView_ * direction);
 }
 

@@ -1,5 +1,7 @@
 // Options of light and the effects that need it.
 
+#include <filesystem>
+#include <fstream>
 #include <numeric>
 
 #include "tests/cli/cli_test.h"
@@ -79,6 +81,15 @@ TEST_F(RenderLight, tracedRaysTakeThePlaceOfMaps) {
   for (const char* more : {"--environment", "background"}) grey.push_back(more);
   EXPECT_NE(render(kProtein, mirror).pixels, render(kProtein, grey).pixels);
   EXPECT_EQ(passes(stats(kProtein, grey)), (std::vector<std::string>{"surface", "trace", "shade"}));
+  std::ofstream(folder_.path() / "white.hdr", std::ios::binary)
+      << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n\x80\x80\x80\x81\x80\x80\x80\x81";
+  std::vector<std::string> white = mirror;
+  for (const char* more : {"--environment", "white.hdr"}) white.push_back(more);
+  EXPECT_EQ(render(kProtein, white).pixels, render(kProtein, grey).pixels) << "as the background is";
+  white.back() = "none.hdr";
+  white.insert(white.begin(), {"render", molecule(kProtein), "-o", "a.png"});
+  expectError(run(white), ExitCode::badInput, {"none.hdr"});
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "a.png"));
   expectError(run({"render", molecule(kProtein), "-o", "a.png", "--representation", "surface", "--refract",
                    "2", "--opacity", "0.5"}),
               ExitCode::badUsage, {"--opacity", "--refract"});
@@ -102,6 +113,7 @@ TEST_F(RenderLight, wrongValuesNameWhatIsAllowed) {
   refused("--refract", "some", "16");
   refused("--refractive-index", "0.5", "10");
   refused("--environment", "moon", "sky");
+  refused("--environment", "moon.gif", ".hdr");
 }
 
 }  // namespace

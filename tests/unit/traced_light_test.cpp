@@ -10,9 +10,11 @@
 #include <thread>
 
 #include "core/bvh/view_ray.h"
+#include "core/environment_map.h"
 #include "core/generated_scenes.h"
 #include "core/hit_errors.h"
 #include "core/quadric_tracer.h"
+#include "core/srgb.h"
 #include "tests/support/random.h"
 #include "tests/support/scenes.h"
 
@@ -322,6 +324,84 @@ TEST(TracedLight, GlassNeitherMakesNorLosesLight) {
         EXPECT_GE(std::min({blue.x, blue.y, blue.z}), 0.16 - 1e-12);
       }
     }
+  }
+}
+
+// Of support 4.
+std::shared_ptr<Primitives> oneBall(const glm::vec3& center) {
+  auto primitives = std::make_shared<Primitives>();
+  MetaballField field;
+  field.level = 0.25;
+  field.balls.push_back({center, 4.0f, 1.0f, 0x808080, 1});
+  primitives->surfaces.push_back(field);
+  return primitives;
+}
+
+// A constant light from all around is that light, through mirrors and glass.
+TEST(TracedLight, AConstantPictureOfTheSurroundingsGivesTheConstant) {
+  const auto primitives = packedBalls(60, 7);
+  const View view = viewOfAll(*primitives, {24, 18});
+  const SceneTracer scene(primitives);
+  const bvh::ViewRays rays(view, primitives->origin);
+  RayScratch scratch;
+  TraceCounts counts;
+  TracedLightSettings settings = glassOf(1.5, 4, 16);
+  settings.trace.environment = Environment::map;
+  settings.trace.environmentMap =
+      std::make_shared<const EnvironmentMap>(6, 3, std::vector<glm::vec3>(18, {2, 0.5f, 0.125f}));
+  const LightTracer tracer(scene, view, settings);
+  for (int y = 0; y < 18; ++y) {
+    for (int x = 0; x < 24; ++x) {
+      const auto ray = rays.through({x + 0.5, y + 0.5});
+      const glm::dvec3 light = tracer.radiance({ray.origin, ray.direction, ray.start}, scratch, counts);
+      EXPECT_NEAR(light.x, 2, 1e-11);
+      EXPECT_NEAR(light.y, 0.5, 1e-11);
+      EXPECT_NEAR(light.z, 0.125, 1e-11);
+    }
+  }
+}
+
+// Red from the left, blue from the right, green from above: a ball mirrors each on its side, from whichever
+// side it is looked at.
+TEST(TracedLight, AMirrorShowsTheSidesOfThePicture) {
+  const auto primitives = oneBall({0, 0, 0});
+  std::vector<glm::vec3> texels;
+  for (int row = 0; row < 64; ++row)
+    for (int column = 0; column < 128; ++column)
+      texels.emplace_back(column < 64 ? 1 : 0, row < 32 ? 1 : 0, column < 64 ? 0 : 1);
+  TracedLightSettings settings;
+  settings.trace.reflect = 1;
+  settings.trace.environment = Environment::map;
+  settings.trace.environmentMap = std::make_shared<const EnvironmentMap>(128, 64, texels);
+  for (const double turn : {0.0, 2.0}) {
+    Camera camera;
+    camera.projection = Projection::orthographic;
+    camera.orientation = glm::angleAxis(turn, glm::normalize(glm::dvec3(1, 2, 3)));
+    camera.distance = 12;
+    const View view = makeView(camera, {40, 30}, primitives->bounds());
+    const SceneTracer scene(primitives);
+    const LightTracer tracer(scene, view, settings);
+    const bvh::ViewRays rays(view, primitives->origin);
+    RayScratch scratch;
+    TraceCounts counts;
+    int seen = 0;
+    for (int y = 0; y < 30; ++y) {
+      for (int x = 0; x < 40; ++x) {
+        const auto ray = rays.through({x + 0.5, y + 0.5});
+        const SceneHit hit = scene.cast({ray.origin, ray.direction, ray.start}, scratch, counts);
+        if (!hit) continue;
+        const glm::dvec3 to = rays.toView(glm::reflect(ray.direction, hit.normal));
+        if (std::abs(to.x) < 0.2 || std::abs(to.y) < 0.2) continue;
+        const glm::dvec4 light = tracer.surfaceLight(hit, ray.direction, scratch, counts);
+        const double mirrored = 1 - light.w;
+        EXPECT_NEAR(light.x, to.x < 0 ? mirrored : 0, 1e-12);
+        EXPECT_NEAR(light.y, to.y > 0 ? mirrored : 0, 1e-12);
+        EXPECT_NEAR(light.z, to.x > 0 ? mirrored : 0, 1e-12);
+        EXPECT_EQ(to.x > 0, x >= 20) << "a ball shows what is to the right on its right side";
+        ++seen;
+      }
+    }
+    EXPECT_GT(seen, 200);
   }
 }
 
