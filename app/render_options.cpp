@@ -338,6 +338,12 @@ void addTraceOptions(CLI::App& app, RenderOptions& o) {
               "Of the glass, 1 to 10; also how strongly surfaces mirror\n"
               "[1.5]",
               [&o](auto& n, auto& v) { o.trace.index = parseNumber(n, v, 1, kMostIndex); });
+  group.value("--attenuation-color,--attenuation-colour", "COLOR",
+              "What a way of --attenuation-distance through the glass\n"
+              "leaves of white light: black, white or '#RRGGBB' [white]",
+              [&o](auto& n, auto& v) { o.trace.attenuationColor = parseColor(n, v); });
+  group.value("--attenuation-distance", "D", "In Angstrom, 0.01 to 1000000 [10]",
+              [&o](auto& n, auto& v) { o.trace.attenuationDistance = parseNumber(n, v, 0.01, 1e6); });
   group.value("--environment", "sky|background|FILE",
               "What mirrors and glass show where there is nothing else; of\n"
               "a FILE, .hdr, .exr, .png or .jpg: an equirectangular picture,\n"

@@ -89,6 +89,8 @@ struct TraceSettings {
   int reflect = 0;     ///< surfaces mirror what is around them, so often one after the other; 0 = off
   int refract = 0;     ///< surfaces are of glass, of which a ray passes so many walls; 0 = off
   double index = 1.5;  ///< of refraction, 1..kMostIndex; also says how strongly surfaces mirror
+  std::uint32_t attenuationColor = 0xFFFFFF;  ///< sRGB: of white light behind attenuationDistance of glass
+  double attenuationDistance = 10;            ///< [Å], > 0
   Environment environment = Environment::sky;
   std::shared_ptr<const EnvironmentMap> environmentMap = {};  ///< not null if that is the environment
   bool light() const { return reflect > 0 || refract > 0; }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
@@ -82,6 +83,12 @@ glm::dvec3 towards(const DirectionalLight& light) {
 glm::dvec3 linearLight(std::uint32_t color) {
   const std::array<double, 256>& linear = linearOfBytes();
   return {linear[color >> 16 & 255u], linear[color >> 8 & 255u], linear[color & 255u]};
+}
+
+// Per Å, so that a distance of glass leaves a colour of white light; black would leave nothing of no glass.
+glm::dvec3 extinctionOf(const TraceSettings& trace) {
+  const glm::dvec3 left = glm::max(linearLight(trace.attenuationColor), glm::dvec3(1e-12));
+  return -glm::log(left) / trace.attenuationDistance;
 }
 
 /// Computes what rays from one pixel's hit find.
@@ -206,7 +213,8 @@ LightTracer::LightTracer(const SceneTracer& scene, const View& view, const Trace
       settings_(settings),
       toView_(view.rotation),
       toKey_(glm::transpose(view.rotation) * towards(settings.lighting.key)),
-      toFill_(glm::transpose(view.rotation) * towards(settings.lighting.fill)) {}
+      toFill_(glm::transpose(view.rotation) * towards(settings.lighting.fill)),
+      extinction_(extinctionOf(settings.trace)) {}
 
 glm::dvec3 LightTracer::environment(const glm::dvec3& direction) const {
   switch (settings_.trace.environment) {
@@ -218,6 +226,10 @@ glm::dvec3 LightTracer::environment(const glm::dvec3& direction) const {
       break;
   }
   return skyLight(toView_ * direction);
+}
+
+glm::dvec3 LightTracer::transmitted(double distance) const {
+  return glm::exp(-extinction_ * distance);
 }
 
 double LightTracer::keyOn(const glm::dvec3& normal) const {
@@ -254,9 +266,9 @@ glm::dvec4 LightTracer::split(const SceneHit& hit, const glm::dvec3& direction, 
   const double ratio = hit.fromInside ? settings_.trace.index : 1 / settings_.trace.index;
   const bool glass = settings_.trace.refract > 0;
   const double mirrored = fresnel(cosine, glass ? ratio : 1 / settings_.trace.index);
-  const auto goOn = [&](const glm::dvec3& to, const RayStart& start, const Bounces& bounces) {
+  const auto goOn = [&](const glm::dvec3& to, const RayStart& start, bool inGlass, const Bounces& bounces) {
     if (bounces.reflect < 0 || bounces.refract < 0 || bounces.weight < kLeastWeight) return environment(to);
-    return follow({hit.point, to, 0, bvh::kInfinity, start}, bounces, scratch, counts);
+    return follow({hit.point, to, 0, bvh::kInfinity, start}, inGlass, bounces, scratch, counts);
   };
   glm::dvec3 light(0.0);
   if (mirrored > 0) {
@@ -265,28 +277,29 @@ glm::dvec4 LightTracer::split(const SceneHit& hit, const glm::dvec3& direction, 
     Bounces bounces{left.reflect - 1, left.refract, left.weight * mirrored};
     if (hit.fromInside && glass)
       bounces = {left.reflect - (mirrored < 1 ? 1 : 0), left.refract - 1, bounces.weight};
-    light += mirrored * goOn(to, hit.outward(), bounces);
+    light += mirrored * goOn(to, hit.outward(), glass && hit.fromInside, bounces);
   }
   if (!glass) return {light, 1 - mirrored};
   if (const auto to = refracted(direction, normal, ratio); to && mirrored < 1)
-    light += (1 - mirrored) *
-             goOn(*to, hit.onward(), {left.reflect, left.refract - 1, left.weight * (1 - mirrored)});
+    light += (1 - mirrored) * goOn(*to, hit.onward(), !hit.fromInside,
+                                   {left.reflect, left.refract - 1, left.weight * (1 - mirrored)});
   return {light, 0};
 }
 
-glm::dvec3 LightTracer::follow(const SceneRay& ray, const Bounces& left, RayScratch& scratch,
+glm::dvec3 LightTracer::follow(const SceneRay& ray, bool inGlass, const Bounces& left, RayScratch& scratch,
                                TraceCounts& counts) const {
   const SceneHit hit = scene_.cast(ray, scratch, counts);
   if (!hit) return environment(ray.direction);
+  const glm::dvec3 share = inGlass ? transmitted(hit.distance) : glm::dvec3(1);
   if (hit.surface == bvh::kNoSurface || !settings_.trace.light())
-    return shade(hit, ray.direction, scratch, counts);
+    return share * shade(hit, ray.direction, scratch, counts);
   const glm::dvec4 light = split(hit, ray.direction, left, scratch, counts);
-  if (light.w == 0) return glm::dvec3(light);
-  return glm::dvec3(light) + light.w * shade(hit, ray.direction, scratch, counts);
+  if (light.w == 0) return share * glm::dvec3(light);
+  return share * (glm::dvec3(light) + light.w * shade(hit, ray.direction, scratch, counts));
 }
 
 glm::dvec3 LightTracer::radiance(const SceneRay& ray, RayScratch& scratch, TraceCounts& counts) const {
-  return follow(ray, {settings_.trace.reflect, settings_.trace.refract, 1}, scratch, counts);
+  return follow(ray, false, {settings_.trace.reflect, settings_.trace.refract, 1}, scratch, counts);
 }
 
 glm::dvec4 LightTracer::surfaceLight(const SceneHit& hit, const glm::dvec3& direction, RayScratch& scratch,

@@ -11,8 +11,8 @@
 // picture every time.
 //
 // Mirrors and glass are surfaces only; Fresnel's equations for unpolarized light share a ray's light out
-// between its mirrored and its refracted part. What they show of the rest of the scene is lit as pictures
-// are.
+// between its mirrored and its refracted part. Glass absorbs exponentially with the way through it (Bouguer,
+// Lambert, Beer). What they show of the rest of the scene is lit as pictures are.
 
 #include <cstdint>
 #include <functional>
@@ -85,11 +85,12 @@ class LightTracer {
     int reflect, refract;
     double weight;  // of what is found in the picture
   };
-  glm::dvec3 follow(const bvh::SceneRay& ray, const Bounces& left, bvh::RayScratch& scratch,
+  glm::dvec3 follow(const bvh::SceneRay& ray, bool inGlass, const Bounces& left, bvh::RayScratch& scratch,
                     bvh::TraceCounts& counts) const;
   glm::dvec4 split(const bvh::SceneHit& hit, const glm::dvec3& direction, const Bounces& left,
                    bvh::RayScratch& scratch, bvh::TraceCounts& counts) const;
   glm::dvec3 environment(const glm::dvec3& direction) const;
+  glm::dvec3 transmitted(double distance) const;
   glm::dvec3 shade(const bvh::SceneHit& hit, const glm::dvec3& direction, bvh::RayScratch& scratch,
                    bvh::TraceCounts& counts) const;
   double keyOn(const glm::dvec3& normal) const;
@@ -99,6 +100,7 @@ class LightTracer {
   TracedLightSettings settings_;
   glm::dmat3 toView_;
   glm::dvec3 toKey_, toFill_;  // unit, in the scene's axes
+  glm::dvec3 extinction_;      // of glass [1/Å]
 };
 
 }  // namespace meniscus

@@ -44,6 +44,8 @@ constexpr std::array kSettings = std::to_array<Setting>({
     {"reflect", picture, integer},
     {"refract", picture, integer},
     {"refractive-index", picture, number},
+    {"attenuation-color", picture, text},
+    {"attenuation-distance", picture, number},
     {"environment", picture, text},
     {"outlines", picture, list},
     {"line-width", picture, number},

@@ -86,6 +86,10 @@ TEST_F(RenderLight, tracedRaysTakeThePlaceOfMaps) {
   std::vector<std::string> white = mirror;
   for (const char* more : {"--environment", "white.hdr"}) white.push_back(more);
   EXPECT_EQ(render(kProtein, white).pixels, render(kProtein, grey).pixels) << "as the background is";
+  std::vector<std::string> glass{"--representation", "surface", "--refract", "4"}, red = glass;
+  for (const char* more : {"--attenuation-colour", "#ff4040", "--attenuation-distance", "5"})
+    red.push_back(more);
+  EXPECT_LT(brightness(render(kProtein, red)), brightness(render(kProtein, glass)));
   white.back() = "none.hdr";
   white.insert(white.begin(), {"render", molecule(kProtein), "-o", "a.png"});
   expectError(run(white), ExitCode::badInput, {"none.hdr"});
@@ -112,6 +116,8 @@ TEST_F(RenderLight, wrongValuesNameWhatIsAllowed) {
   refused("--reflect", "17", "16");
   refused("--refract", "some", "16");
   refused("--refractive-index", "0.5", "10");
+  refused("--attenuation-color", "green", "#RRGGBB");
+  refused("--attenuation-distance", "0", "0.01");
   refused("--environment", "moon", "sky");
   refused("--environment", "moon.gif", ".hdr");
 }

@@ -405,6 +405,73 @@ TEST(TracedLight, AMirrorShowsTheSidesOfThePicture) {
   }
 }
 
+// Without refraction light goes straight through a ball of glass: what is left is that of the chord, which
+// the closed form knows (Bouguer, Lambert, Beer).
+TEST(TracedLight, GlassAbsorbsByTheWayThroughIt) {
+  const auto primitives = oneBall({0.5, -1, 2});
+  const MetaballField& field = primitives->surfaces[0];
+  const double radius = 4 * coreShare(field.kernel, field.level, 1);
+  const SceneTracer scene(primitives);
+  TracedLightSettings settings = glassOf(1, 0, 2);
+  settings.trace.attenuationColor = 0xFF8000;
+  settings.trace.attenuationDistance = 3;
+  settings.trace.environment = Environment::background;
+  settings.background.color = 0xFFFFFF;
+  const LightTracer tracer(scene, viewOfAll(*primitives, {8, 8}), settings);
+  const double green = linearFromSrgb(128 / 255.0);
+  RayScratch scratch;
+  TraceCounts counts;
+  test::Random random(3);
+  int through = 0;
+  for (int i = 0; i < 500; ++i) {
+    const glm::dvec3 direction = random.direction();
+    const glm::dvec3 middle = glm::dvec3(0.5, -1, 2) + random.inBox(radius);
+    const glm::dvec3 to = glm::dvec3(0.5, -1, 2) - (middle - 10.0 * direction);
+    const double off2 = glm::dot(to, to) - glm::dot(to, direction) * glm::dot(to, direction);
+    const double chord = 2 * std::sqrt(std::max(radius * radius - off2, 0.0));
+    if (chord > 0 && chord < 0.05) continue;
+    const glm::dvec3 light =
+        tracer.radiance({middle - 10.0 * direction, direction, 0, bvh::kInfinity, {}}, scratch, counts);
+    EXPECT_NEAR(light.x, 1, 1e-12);
+    EXPECT_NEAR(light.y, std::pow(green, chord / 3), 1e-6);
+    EXPECT_NEAR(light.z, std::pow(1e-12, chord / 3), 1e-6);
+    through += chord > 0 ? 1 : 0;
+  }
+  EXPECT_GT(through, 200);
+}
+
+// Of whatever shape: at the same colour, half the distance leaves the square.
+TEST(TracedLight, HalfTheAttenuationDistanceLeavesTheSquare) {
+  const auto primitives = packedBalls(30, 7);
+  const View view = viewOfAll(*primitives, {16, 12});
+  const SceneTracer scene(primitives);
+  const bvh::ViewRays rays(view, primitives->origin);
+  RayScratch scratch;
+  TraceCounts counts;
+  TracedLightSettings once = glassOf(1, 0, 16), twice = once, clear = once;
+  once.trace.attenuationColor = twice.trace.attenuationColor = 0x40C0FF;
+  once.trace.attenuationDistance = 4;
+  twice.trace.attenuationDistance = 8;
+  for (TracedLightSettings* settings : {&once, &twice, &clear}) {
+    settings->trace.environment = Environment::background;
+    settings->background.color = 0xFFFFFF;
+  }
+  const LightTracer dark(scene, view, once), bright(scene, view, twice), none(scene, view, clear);
+  int darkened = 0;
+  for (int y = 0; y < 12; ++y) {
+    for (int x = 0; x < 16; ++x) {
+      const auto ray = rays.through({x + 0.5, y + 0.5});
+      const SceneRay at{ray.origin, ray.direction, ray.start};
+      const glm::dvec3 a = dark.radiance(at, scratch, counts), b = bright.radiance(at, scratch, counts);
+      EXPECT_NEAR(a.x, b.x * b.x, 1e-9);
+      EXPECT_NEAR(a.y, b.y * b.y, 1e-9);
+      EXPECT_EQ(none.radiance(at, scratch, counts), glm::dvec3(1));
+      darkened += a.x < 0.9 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(darkened, 30);
+}
+
 // Whoever no longer wants the picture says so between bands of rows.
 TEST(TracedLight, IsEndedByItsWatch) {
   const auto primitives = test::randomSpheres(200, 3);
