@@ -13,8 +13,9 @@ double milliseconds(Latency::Clock::time_point from, Latency::Clock::time_point 
 
 void Latency::asked(std::uint64_t number, bool moving, Clock::time_point when) {
   if (moving) waiting_.emplace_back(number, when);
-  // A still request after moving ones is for the same input.
-  if (moving || !lastInput_) lastInput_ = when;
+  // A still request after moving ones is for the same input; after a still one it is for another.
+  if (moving || !wasMoving_ || !lastInput_) lastInput_ = when;
+  wasMoving_ = moving;
 }
 
 // Requests that were overtaken are shown by a later picture: the user waited since the first of them.

@@ -41,6 +41,7 @@ class Latency {
   static Summary summaryOf(std::vector<double> values);
   std::vector<std::pair<std::uint64_t, Clock::time_point>> waiting_;  // ascending
   std::optional<Clock::time_point> lastInput_;
+  bool wasMoving_ = false;  // the request before
   std::vector<double> moving_, full_, frames_, windows_;
 };
 

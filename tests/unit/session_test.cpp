@@ -277,5 +277,20 @@ TEST(Latency, OvertakenRequestsCountFromTheFirst) {
   EXPECT_DOUBLE_EQ(latency.lastFullMs(), 500);
 }
 
+TEST(Latency, AStillRequestThatOvertakesAStillOneCountsFromItself) {
+  using namespace std::chrono_literals;
+  Latency latency;
+  const Latency::Clock::time_point start = Latency::Clock::now();
+  latency.asked(1, false, start);
+  latency.asked(2, false, start + 1000ms);
+  latency.shown(2, true, start + 1200ms);
+  EXPECT_DOUBLE_EQ(latency.lastFullMs(), 200);
+  latency.asked(3, false, start + 2000ms);
+  latency.asked(4, true, start + 2100ms);
+  latency.asked(5, false, start + 2300ms);
+  latency.shown(5, true, start + 2400ms);
+  EXPECT_DOUBLE_EQ(latency.lastFullMs(), 300);
+}
+
 }  // namespace
 }  // namespace meniscus
