@@ -141,7 +141,9 @@ void drawScale(const RenderOptions& options, const PanelPlace& place, PanelCanva
     canvas.paste(place, drawErrorScale(right - left, height), right - left, height, left, top);
 }
 
-RenderSettings settingsFor(const RenderOptions& options) {
+}  // namespace
+
+RenderSettings renderSettingsOf(const RenderOptions& options) {
   RenderSettings settings;
   settings.samples = options.samples;
   settings.shadows = options.shadows;
@@ -159,9 +161,8 @@ RenderSettings settingsFor(const RenderOptions& options) {
   return settings;
 }
 
-Lighting lightFor(const RenderOptions& options) {
-  const bool occlusion = options.occlusion.on || options.trace.occlusion > 0;
-  Lighting light = occlusion ? ambientLighting() : Lighting{};
+Lighting lightOf(const RenderOptions& options) {
+  Lighting light = renderSettingsOf(options).occlusion.on ? ambientLighting() : Lighting{};
   light.key.intensity = options.keyLight.value_or(light.key.intensity);
   light.key.direction = options.keyDirection.value_or(light.key.direction);
   light.fill.intensity = options.fillLight.value_or(light.fill.intensity);
@@ -169,8 +170,6 @@ Lighting lightFor(const RenderOptions& options) {
   light.specular = options.highlight.value_or(light.specular);
   return light;
 }
-
-}  // namespace
 
 // Those that are there already, of the picture before, serve again.
 void PictureDrawer::readEnvironments(const Picture& picture) {
@@ -248,7 +247,7 @@ PictureReport PictureDrawer::render(Picture& picture, RowSink& sink, const Pixel
   const View view = makeView(scene.camera, options.size, primitives->bounds());
   std::vector<LabelSprite> labels = drawLabels(
       scene.labels, std::max(0.01 * options.labelSize * options.size.height, 1.0), options.labelFont);
-  RenderSettings settings = settingsFor(options);
+  RenderSettings settings = renderSettingsOf(options);
   if (!options.environmentFile.empty())
     settings.trace.environmentMap = environments_.at(options.environmentFile);
   progress_.start(label);
@@ -256,7 +255,7 @@ PictureReport PictureDrawer::render(Picture& picture, RowSink& sink, const Pixel
   show(std::move(primitives));
   draw.setLabels(std::move(labels), options.labelColors);
   draw.setPreview(layout.format == PixelFormat::rgba8 ? preview : PicturePreview{});
-  draw.renderPicture(view, lightFor(options), scene.background, settings, layout, sink, [this](double share) {
+  draw.renderPicture(view, lightOf(options), scene.background, settings, layout, sink, [this](double share) {
     if (watch) watch();
     progress_.update(share);
   });

@@ -16,6 +16,10 @@
 
 namespace meniscus {
 
+/// The effects of a picture with these options, and its light.
+RenderSettings renderSettingsOf(const RenderOptions& options);
+Lighting lightOf(const RenderOptions& options);
+
 class PictureDrawer {
  public:
   /// The backend, the shaders and what is timed are taken from `options`.

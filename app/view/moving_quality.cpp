@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
-#include "core/scene.h"
+#include "app/picture_drawer.h"
 
 namespace meniscus {
 namespace {
@@ -20,15 +19,30 @@ struct Cut {
   void (*apply)(RenderOptions&);
 };
 
-// The dearest first (docs/measured/effects_cost.md).
+// The dearest first: rays that are traced, and then as measured (docs/measured/effects_cost.md).
 constexpr Cut kCuts[] = {
+    {"mirrors and glass", [](const RenderOptions& o) { return o.trace.light(); },
+     [](RenderOptions& o) { o.trace.reflect = o.trace.refract = 0; }},
+    {"all traced rays of a pixel but one",
+     [](const RenderOptions& o) { return std::max(o.trace.shadows, o.trace.occlusion) > 1; },
+     [](RenderOptions& o) {
+       o.trace.shadows = std::min(o.trace.shadows, 1);
+       o.trace.occlusion = std::min(o.trace.occlusion, 1);
+     }},
+    {"traced rays", [](const RenderOptions& o) { return std::max(o.trace.shadows, o.trace.occlusion) > 0; },
+     [](RenderOptions& o) {
+       const RenderSettings traced = renderSettingsOf(o);  // maps take the place of rays
+       o.shadows.mode = traced.shadows.mode;
+       o.occlusion.on = traced.occlusion.on;
+       o.trace.shadows = o.trace.occlusion = 0;
+     }},
     {"ambient occlusion", [](const RenderOptions& o) { return o.occlusion.on; },
      [](RenderOptions& o) {
        // Without it the light would change, too.
-       const Lighting light = ambientLighting();
-       o.keyLight = o.keyLight.value_or(light.key.intensity);
-       o.fillLight = o.fillLight.value_or(light.fill.intensity);
-       o.ambientLight = o.ambientLight.value_or(light.ambient);
+       const Lighting light = lightOf(o);
+       o.keyLight = light.key.intensity;
+       o.fillLight = light.fill.intensity;
+       o.ambientLight = light.ambient;
        o.occlusion.on = false;
      }},
     {"soft edges of shadows", [](const RenderOptions& o) { return o.shadows.mode == ShadowMode::soft; },
@@ -43,13 +57,22 @@ constexpr Cut kCuts[] = {
        o.lines.groups = LineGroups::none;
      }}};
 
+// The names of the first `most` cuts that apply, one after the other: some only apply after others.
+std::vector<std::string> leaveOut(RenderOptions& options, int most) {
+  std::vector<std::string> names;
+  for (const Cut& cut : kCuts) {
+    if (static_cast<int>(names.size()) >= most) break;
+    if (!cut.applies(options)) continue;
+    cut.apply(options);
+    names.emplace_back(cut.name);
+  }
+  return names;
+}
+
 }  // namespace
 
-std::vector<std::string> possibleCuts(const RenderOptions& options) {
-  std::vector<std::string> names;
-  for (const Cut& cut : kCuts)
-    if (cut.applies(options)) names.emplace_back(cut.name);
-  return names;
+std::vector<std::string> possibleCuts(RenderOptions options, int most) {
+  return leaveOut(options, most);
 }
 
 RenderOptions reduced(RenderOptions options, const MovingQuality& quality) {
@@ -61,13 +84,7 @@ RenderOptions reduced(RenderOptions options, const MovingQuality& quality) {
   options.shadows.samples = std::min(options.shadows.samples, 16);
   options.occlusion.directions = 8;
   options.lines.width = std::max(0.5, options.lines.width * quality.scale);
-  int left = quality.cuts;
-  for (const Cut& cut : kCuts) {
-    if (left == 0) break;
-    if (!cut.applies(options)) continue;
-    cut.apply(options);
-    --left;
-  }
+  leaveOut(options, quality.cuts);
   return options;
 }
 

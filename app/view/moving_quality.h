@@ -3,6 +3,7 @@
 // pixels, one ray for each, and then the dearest effects left out, one after the other. Chosen by the time
 // that frames take, which is why none of it needs to know the machine.
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -15,8 +16,8 @@ struct MovingQuality {
   int cuts = 0;        ///< how many of the effects are left out
 };
 
-/// What can be left out of a picture of these options, the dearest first, in words.
-std::vector<std::string> possibleCuts(const RenderOptions& options);
+/// What can be left out of a picture of these options, the dearest first, in words; the first `most`.
+std::vector<std::string> possibleCuts(RenderOptions options, int most = std::numeric_limits<int>::max());
 
 /// The options of a frame of a moving picture: one ray per pixel, of `quality`.
 RenderOptions reduced(RenderOptions options, const MovingQuality& quality);

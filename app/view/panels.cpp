@@ -11,6 +11,7 @@
 #include <string>
 
 #include "app/measurement.h"
+#include "app/picture_drawer.h"
 #include "app/style.h"
 #include "app/view/option_widgets.h"
 #include "app/view/viewer.h"
@@ -213,11 +214,11 @@ void effectsPanel(Viewer& viewer, const RenderOptions& o) {
 
 void lightPanel(Viewer& viewer, const RenderOptions& o) {
   Document& document = *viewer.document();
-  const Lighting light = o.occlusion.on ? ambientLighting() : Lighting{};
-  optionSlider(document, "key", "key-light", o.keyLight.value_or(light.key.intensity), 0, 2, "%.2f");
-  optionSlider(document, "fill", "fill-light", o.fillLight.value_or(light.fill.intensity), 0, 2, "%.2f");
-  optionSlider(document, "ambient", "ambient-light", o.ambientLight.value_or(light.ambient), 0, 2, "%.2f");
-  optionSlider(document, "highlight", "highlight", o.highlight.value_or(light.specular), 0, 2, "%.2f");
+  const Lighting light = lightOf(o);
+  optionSlider(document, "key", "key-light", light.key.intensity, 0, 2, "%.2f");
+  optionSlider(document, "fill", "fill-light", light.fill.intensity, 0, 2, "%.2f");
+  optionSlider(document, "ambient", "ambient-light", light.ambient, 0, 2, "%.2f");
+  optionSlider(document, "highlight", "highlight", light.specular, 0, 2, "%.2f");
   ImGui::TextDisabled("Ctrl drag turns the key light");
   if (document.has("light-direction") && ImGui::Button("Light from the upper left"))
     document.remove("light-direction");

@@ -228,6 +228,30 @@ TEST(MovingQuality, CutsTheDearestFirstAndKeepsTheLight) {
   EXPECT_TRUE(possibleCuts(all).empty());
   EXPECT_EQ(all.size, (ImageSize{1, 1}));
   EXPECT_TRUE(possibleCuts(RenderOptions{}).empty());
+  EXPECT_EQ(possibleCuts(options, 2), (std::vector<std::string>{cuts[0], cuts[1]}));
+}
+
+TEST(MovingQuality, LeavesOutRaysBeforeTheMapsThatTakeTheirPlace) {
+  const RenderOptions options = parseSettings({"--trace-shadows", "64", "--trace-ao", "256", "--reflect", "3"});
+  const std::vector<std::string> cuts = possibleCuts(options);
+  EXPECT_EQ(cuts, (std::vector<std::string>{"mirrors and glass", "all traced rays of a pixel but one",
+                                            "traced rays", "ambient occlusion", "soft edges of shadows",
+                                            "shadows"}));
+  EXPECT_EQ(reduced(options, {0.5, 0}).trace.shadows, 64);
+  const RenderOptions one = reduced(options, {0.5, 2});
+  EXPECT_FALSE(one.trace.light());
+  EXPECT_EQ(one.trace.shadows, 1);
+  EXPECT_EQ(one.trace.occlusion, 1);
+  const RenderOptions maps = reduced(options, {0.5, 3});
+  EXPECT_FALSE(maps.trace.any());
+  EXPECT_EQ(maps.shadows.mode, ShadowMode::soft);
+  EXPECT_TRUE(maps.occlusion.on);
+  const RenderOptions none = reduced(options, {0.5, 4});
+  EXPECT_FALSE(none.occlusion.on);
+  EXPECT_EQ(none.ambientLight, ambientLighting().ambient);  // as the picture that stands
+  // What is traced by one ray has fewer steps to take.
+  EXPECT_EQ(possibleCuts(parseSettings({"--trace-shadows", "1", "--shadows", "hard"})),
+            (std::vector<std::string>{"traced rays", "shadows"}));
 }
 
 // A machine that takes so long for an effect and for a million pixels.
