@@ -14,8 +14,6 @@
 namespace meniscus {
 namespace {
 
-constexpr std::array<const char*, 8> kRepresentations{
-    "spacefill", "ball_and_stick", "licorice", "cartoon", "surface", "backbone", "putty", "ellipsoids"};
 constexpr std::array<const char*, 6> kSchemes{"element", "chain", "residue", "bfactor", "plddt", "rainbow"};
 
 template <typename Number>
@@ -97,7 +95,10 @@ void optionMember(Document& document, const char* label, const char* option, con
 }
 
 bool representationCombo(const char* label, std::string& word) {
-  return wordCombo(label, kRepresentations, word);
+  std::array<const char*, kRepresentationsOffered.size()> words;
+  std::transform(kRepresentationsOffered.begin(), kRepresentationsOffered.end(), words.begin(),
+                 [](Representation offered) { return representationName(offered).data(); });
+  return wordCombo(label, words, word);
 }
 
 bool coloringCombo(const char* label, std::string& word) {

@@ -4,6 +4,7 @@
 // render draws of them, undoing is going back to those before, and the command that draws the same can be
 // written down.
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -28,6 +29,12 @@ struct Pick {
 /// A CID for an atom of a molecule, and its name. An empty CID if none tells it from all others.
 std::string cidOf(const Molecule& molecule, std::uint32_t atom);
 std::string nameOf(const Molecule& molecule, std::uint32_t atom);
+
+/// Representations in the order in which they are offered.
+inline constexpr std::array<Representation, 8> kRepresentationsOffered{
+    Representation::spacefill, Representation::ballAndStick, Representation::licorice,
+    Representation::cartoon,   Representation::surface,      Representation::backbone,
+    Representation::putty,     Representation::ellipsoids};
 
 /// A file that is open, and how it is drawn.
 class Document {

@@ -6,7 +6,6 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -243,13 +242,12 @@ void Viewer::handleKey(int key, bool control, bool shift) {
         return;
     }
   }
-  static constexpr std::array<const char*, 8> kByNumber{
-      "spacefill", "ball_and_stick", "licorice", "cartoon", "surface", "backbone", "putty", "ellipsoids"};
   if (shown && key >= GLFW_KEY_1 && key <= GLFW_KEY_8) {
     if (shown->isScene())
       say("a scene says itself how its atoms are drawn");
     else
-      shown->set("representation", kByNumber[static_cast<std::size_t>(key - GLFW_KEY_1)]);
+      shown->set("representation", std::string(representationName(
+                                       kRepresentationsOffered[static_cast<std::size_t>(key - GLFW_KEY_1)])));
     return;
   }
   switch (key) {
