@@ -28,9 +28,10 @@ void optionMember(Document& document, const char* label, const char* option, con
 
 /// Spacefill, ball and stick, ...; true if another was chosen, which is in `word` then.
 bool representationCombo(const char* label, std::string& word);
-/// Schemes and colours of one's own; as above.
+/// Schemes and colours of one's own; as above. The last item is the colour, as after colorEdit().
 bool coloringCombo(const char* label, std::string& word);
-/// A colour as '#RRGGBB'; as above, while it is being chosen, too.
+/// A colour as '#RRGGBB'; as above, while it is being chosen, too: ImGui::IsItemDeactivatedAfterEdit() says
+/// when that ends.
 bool colorEdit(const char* label, Rgb& color);
 
 }  // namespace meniscus

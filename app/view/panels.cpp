@@ -84,6 +84,7 @@ void lookPanel(Viewer& viewer, const RenderOptions& o) {
     if (representationCombo("drawn as", word)) document.set("representation", word);
     std::string coloring = document.value("color").value_or(coloringName(o.coloring));
     if (coloringCombo("coloured by", coloring)) document.set("color", coloring, coloring.starts_with('#'));
+    if (ImGui::IsItemDeactivatedAfterEdit()) document.endChange();
     optionCheck(document, "carbons by chain", "carbons", o.coloring.carbonsByChain, "chain", "element");
   }
   if (ImGui::BeginCombo("style", "choose")) {
@@ -105,7 +106,9 @@ void selectionsPanel(Viewer& viewer, const RenderOptions& o) {
     std::string representation(representationName(apart.representation));
     std::string coloring = coloringName(apart.coloring.value_or(o.coloring));
     bool changed = representationCombo("drawn as", representation);
-    changed = coloringCombo("coloured by", coloring) || changed;
+    const bool recolored = coloringCombo("coloured by", coloring);
+    if (ImGui::IsItemDeactivatedAfterEdit()) document.endChange();
+    changed = recolored || changed;
     ImGui::PopID();
     if (!removed && !changed) continue;
     if (removed) {
@@ -113,7 +116,7 @@ void selectionsPanel(Viewer& viewer, const RenderOptions& o) {
     } else {
       shown[i] = fmt::format("{}={}:{}", apart.cid, representation, coloring);
     }
-    document.setAll("show", shown);
+    document.setAll("show", shown, recolored && coloring.starts_with('#'));
     return;
   }
   const bool entered = ImGui::InputTextWithHint("##cid", "//A/10-20 or (HEM)", &viewer.newSelection,
@@ -210,6 +213,7 @@ void effectsPanel(Viewer& viewer, const RenderOptions& o) {
   ImGui::SameLine();
   Rgb color = o.background.color;
   if (colorEdit("##background", color)) document.set("background", fmt::format("#{:06X}", color), true);
+  if (ImGui::IsItemDeactivatedAfterEdit()) document.endChange();
 }
 
 void lightPanel(Viewer& viewer, const RenderOptions& o) {

@@ -114,9 +114,9 @@ void Document::set(const std::string& option, const std::string& text, bool goes
   given_.erase(std::remove_if(first + 1, given_.end(), named), given_.end());
 }
 
-void Document::setAll(const std::string& option, const std::vector<std::string>& texts) {
+void Document::setAll(const std::string& option, const std::vector<std::string>& texts, bool goesOn) {
   if (values(option) == texts) return;
-  changed(option, false);
+  changed(option, goesOn);
   std::erase_if(given_, [&](const auto& entry) { return entry.first == option; });
   for (const std::string& text : texts) given_.emplace_back(option, text);
 }

@@ -53,8 +53,8 @@ class Document {
   /// Replaces all values of an option by one. While `goesOn` (a slider that is being dragged), changes of the
   /// same option are undone together.
   void set(const std::string& option, const std::string& value, bool goesOn = false);
-  /// Replaces all values of an option that may be repeated.
-  void setAll(const std::string& option, const std::vector<std::string>& values);
+  /// Replaces all values of an option that may be repeated; `goesOn` as above.
+  void setAll(const std::string& option, const std::vector<std::string>& values, bool goesOn = false);
   void remove(std::string_view option);
   /// Several changes as one step.
   void replace(GivenOptions given);
