@@ -387,7 +387,7 @@ void measuresPanel(Viewer& viewer) {
 }  // namespace
 
 double panelWidth(const Viewer& viewer) {
-  return 330 * viewer.contentScale();
+  return kPanelWidth * viewer.contentScale();
 }
 
 void drawPanels(Viewer& viewer, double height) {

@@ -6,6 +6,8 @@ namespace meniscus {
 
 class Viewer;
 
+/// Width on an ordinary display.
+inline constexpr int kPanelWidth = 330;
 /// Width in the window's units.
 double panelWidth(const Viewer& viewer);
 /// Draws all panels, `height` high; within a frame of ImGui.

@@ -34,7 +34,7 @@ std::string baseName(const std::string& file) {
 
 ImageSize windowSizeFor(const RenderOptions& base) {
   // As wide as a panel more; a screen is seldom higher than that.
-  return {std::min(base.size.width, 1600) + 330, std::min(base.size.height, 1000)};
+  return {std::min(base.size.width, 1600) + kPanelWidth, std::min(base.size.height, 1000)};
 }
 
 }  // namespace

@@ -135,7 +135,7 @@ void Viewer::handleMouse() {
   }
   if (!anyDown) {
     if (dragging_) document()->endChange();
-    dragging_ = pressed_ = false;
+    dragging_ = pressed_ = onDivider_ = false;
   }
   hover_.clear();
   if (free && !anyDown && finished())
