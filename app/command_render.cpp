@@ -243,11 +243,7 @@ void RenderRun::drawAll(const Input& input, Prepared& prepared) {
   report_.parseSeconds += made.parseSeconds;
   report_.bondsSeconds += made.bondsSeconds;
   showNotes(input, made);
-  if (options_.strict && !made.unsupported.empty()) {
-    const std::size_t more = made.unsupported.size() - 1;
-    throw InputError(made.unsupported.front() + (more > 0 ? fmt::format(" (and {} more)", more) : "") +
-                     " (--strict)");
-  }
+  if (options_.strict) requireAllSupported(made);
   const std::size_t frames = static_cast<std::size_t>(std::max(1, options_.turntable));
   const std::size_t count = made.pictures.size() * frames;
   std::unique_ptr<FilmFile> film;

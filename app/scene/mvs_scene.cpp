@@ -480,4 +480,11 @@ Preparation scenePictures(const std::string& name, MvsFile& file, const RenderOp
   return all;
 }
 
+void requireAllSupported(const Preparation& scene) {
+  if (scene.unsupported.empty()) return;
+  const std::size_t more = scene.unsupported.size() - 1;
+  throw InputError(scene.unsupported.front() + (more > 0 ? fmt::format(" (and {} more)", more) : "") +
+                   " (--strict)");
+}
+
 }  // namespace meniscus

@@ -12,4 +12,7 @@ namespace meniscus {
 /// over the scene's own. Throws InputError naming file and place.
 Preparation scenePictures(const std::string& name, MvsFile& file, const RenderOptions& options);
 
+/// --strict: throws InputError if something of a scene is not drawn.
+void requireAllSupported(const Preparation& scene);
+
 }  // namespace meniscus
