@@ -17,8 +17,8 @@ namespace meniscus {
 namespace {
 
 constexpr const char* kHelp =
-    "Shows structure files (PDB, mmCIF, plain or .gz) and MolViewSpec scenes in a window: the picture that\n"
-    "`meniscus render` writes, to be turned. H in the window shows what keys and mouse do.\n"
+    "Shows structure files (PDB, mmCIF, plain or .gz, BinaryCIF) and MolViewSpec scenes in a window: the\n"
+    "picture that `meniscus render` writes, to be turned. H in the window shows what keys and mouse do.\n"
     "\n"
     "Usage: meniscus view [FILE...] [options]\n"
     "\n"
@@ -70,11 +70,10 @@ int runView(const std::vector<std::string>& arguments) {
   requireNoOutputs(options);
   std::erase_if(options.given,
                 [](const auto& option) { return option.first == "style"; });  // its options stand there, too
-  std::vector<std::string> files = options.files;
-  files.insert(files.end(), options.scenes.begin(), options.scenes.end());
-  for (const std::string& file : files) requireExists(file);
+  for (const std::string& file : options.files) requireExists(file);
+  for (const std::string& scene : options.scenes) requireExists(scene);
   if (!options.statsFile.empty()) requireWritable(options.statsFile);
-  Viewer viewer(options, files);
+  Viewer viewer(options);
   viewer.run();
   if (!options.statsFile.empty()) writeTextFile(options.statsFile, viewer.statsAsJson());
   return 0;

@@ -1,7 +1,5 @@
 #include "app/view/picture_worker.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -53,13 +51,15 @@ GivenOptions withoutDivider(GivenOptions given) {
 Preparation preparePictures(const RenderOptions& options, const std::string& bytes) {
   if (options.scenes.empty()) return structurePictures(options.files.front(), bytes, options);
   MvsFile file(options.scenes.front(), {options.offline, options.cache});
-  return scenePictures(options.scenes.front(), file, options);
+  Preparation made = scenePictures(options.scenes.front(), file, options);
+  if (options.strict) requireAllSupported(made);
+  return made;
 }
 
-RenderOptions optionsFrom(const std::vector<std::string>& arguments) {
-  std::optional<RenderOptions> options = parseRenderOptions(arguments);
-  if (!options) throw UsageError("--help: has no meaning in a window");
-  return std::move(*options);
+// The picture that a camera is fitted to, if none is given.
+ImageSize fittedTo(const RenderOptions& options) {
+  if (options.panels.empty()) return options.size;
+  return placePanels(options.panels.size(), options.size, options.divider).front().picture;
 }
 
 RenderOptions timed(RenderOptions options) {
@@ -72,14 +72,14 @@ RenderOptions timed(RenderOptions options) {
 // What the thread holds: all of it is made, used and destroyed there.
 class PictureWorker::Drawing {
  public:
-  explicit Drawing(PictureWorker& worker) : worker_(worker), options_(timed(worker.base_)) { renew(); }
+  explicit Drawing(PictureWorker& worker) : worker_(worker), base_(timed(worker.base_)) { renew(); }
 
   void serve(const ViewRequest& request);
   void save(std::uint64_t document, const std::vector<std::string>& arguments);
   /// After OpenGL failed: begins anew with the next picture.
   void renew() {
     drawer_.reset();
-    drawer_ = std::make_unique<PictureDrawer>(options_, report_, progress_);
+    drawer_ = std::make_unique<PictureDrawer>(base_, report_, progress_);
     drawer_->watch = [this] {
       if (interruptible_ && worker_.superseded(number_)) throw Superseded{};
     };
@@ -87,8 +87,11 @@ class PictureWorker::Drawing {
 
  private:
   using Change = std::function<RenderOptions(RenderOptions)>;
+  RenderOptions optionsFrom(const std::vector<std::string>& arguments) const;
+  Preparation read(std::uint64_t document, const RenderOptions& options, bool reread);
   void prepare(const ViewRequest& request);
-  const std::string& bytesOf(std::uint64_t document, const RenderOptions& options, bool reread);
+  const RenderOptions& optionsOf(const Picture& picture) const;
+  std::vector<std::string> cutsOf(const Picture& picture, int most) const;
   ViewFrame draw(const ViewRequest& request, const Change& change, FrameStage stage);
   ViewFrame emptyFrame(const ViewRequest& request, const RenderOptions& options, FrameStage stage) const;
   void drawStill(const ViewRequest& request);
@@ -96,7 +99,7 @@ class PictureWorker::Drawing {
   ViewHits hits(const ViewRequest& request);
 
   PictureWorker& worker_;
-  const RenderOptions options_;
+  const RenderOptions base_;
   RunReport report_;
   Progress progress_{false};
   std::unique_ptr<PictureDrawer> drawer_;
@@ -104,12 +107,13 @@ class PictureWorker::Drawing {
   bool interruptible_ = false;
 
   std::map<std::uint64_t, std::string> bytes_;  // structure files as they were read, by document
-  std::vector<std::string> arguments_;          // of preparation_
-  GivenOptions sceneOptions_;
-  ImageSize size_;
+  std::vector<std::string> arguments_;          // of what is shown
+  GivenOptions sceneOptions_, given_;
+  ImageSize fit_, fitted_;  // what its camera is to be fitted to, and what preparation_'s was
   std::uint64_t document_ = 0;
-  std::shared_ptr<Preparation> preparation_;
-  GivenOptions given_;
+  // Both are the window's, too, once they are published: never changed, only replaced.
+  std::shared_ptr<const Preparation> preparation_;
+  std::shared_ptr<const RenderOptions> options_;  // how a structure is drawn now; scenes say it themselves
   // Of its pictures, or of their panels, once they are wanted.
   std::vector<std::vector<std::shared_ptr<const Primitives>>> primitives_;
   std::size_t shown_ = 0;
@@ -117,52 +121,84 @@ class PictureWorker::Drawing {
   QualityGovernor governor_;
 };
 
+// What is no part of a picture is said once, for all of them.
+RenderOptions PictureWorker::Drawing::optionsFrom(const std::vector<std::string>& arguments) const {
+  std::optional<RenderOptions> options = parseRenderOptions(arguments);
+  if (!options) throw UsageError("--help: has no meaning in a window");
+  options->offline = base_.offline;
+  options->cache = base_.cache;
+  options->strict = base_.strict;
+  options->quadrics = base_.quadrics;
+  return std::move(*options);
+}
+
 // A file that has gone since or is being written again stays what it was.
-const std::string& PictureWorker::Drawing::bytesOf(std::uint64_t document, const RenderOptions& options,
-                                                   bool reread) {
-  std::string& bytes = bytes_[document];
-  if (options.scenes.empty() && (reread || bytes.empty())) bytes = readBytes(options.files.front());
-  return bytes;
+Preparation PictureWorker::Drawing::read(std::uint64_t document, const RenderOptions& options, bool reread) {
+  std::string& known = bytes_[document];
+  if (!options.scenes.empty() || (!reread && !known.empty())) return preparePictures(options, known);
+  std::string bytes = readBytes(options.files.front());
+  Preparation made = preparePictures(options, bytes);
+  known = std::move(bytes);
+  return made;
+}
+
+const RenderOptions& PictureWorker::Drawing::optionsOf(const Picture& picture) const {
+  return options_ ? *options_ : picture.options;
+}
+
+// What is left out of a picture by so many cuts, or of any of its panels.
+std::vector<std::string> PictureWorker::Drawing::cutsOf(const Picture& picture, int most) const {
+  if (picture.panels.empty()) return possibleCuts(optionsOf(picture), most);
+  std::vector<std::string> all;
+  for (const Picture& panel : picture.panels)
+    for (std::string& cut : possibleCuts(panel.options, most))
+      if (std::find(all.begin(), all.end(), cut) == all.end()) all.push_back(std::move(cut));
+  return all;
 }
 
 // Reads and builds again only what the options that changed are about.
 void PictureWorker::Drawing::prepare(const ViewRequest& request) {
-  if (preparation_ && request.arguments == arguments_ && request.document == document_ && !request.reread)
-    return;
-  RenderOptions options = optionsFrom(request.arguments);
-  GivenOptions sceneOptionsNow = sceneOptions(options.given);
-  GivenOptions given = withoutDivider(options.given);
-  const bool sizeMatters = options.size != size_ && !request.camera;
-  const bool sameScene = preparation_ && request.document == document_ && options.scenes.empty() &&
-                         !request.reread && !sizeMatters && sceneOptionsNow == sceneOptions_ &&
-                         (options.panels.empty() || given == given_);
-  const int cuts = static_cast<int>(possibleCuts(options).size());
-  if (sameScene) {
-    for (Picture& picture : preparation_->pictures) picture.options = options;
-  } else {
-    auto made = std::make_shared<Preparation>(
-        preparePictures(options, bytesOf(request.document, options, request.reread)));
-    primitives_.assign(made->pictures.size(), {});
+  const bool same = preparation_ && request.document == document_ && !request.reread;
+  if (same && request.arguments == arguments_ && (request.camera || fit_ == fitted_)) return;
+  auto options = std::make_shared<const RenderOptions>(optionsFrom(request.arguments));
+  const bool structure = options->scenes.empty();
+  GivenOptions sceneOptionsNow = sceneOptions(options->given);
+  GivenOptions given = withoutDivider(options->given);
+  const bool sameObjects =
+      same && structure && sceneOptionsNow == sceneOptions_ && (options->panels.empty() || given == given_);
+  const ImageSize fit = fittedTo(*options);
+  if (!sameObjects || (!request.camera && fit != fitted_)) {
+    auto made = std::make_shared<const Preparation>(read(request.document, *options, request.reread));
+    if (!sameObjects) primitives_.assign(made->pictures.size(), {});
     preparation_ = std::move(made);
+    fitted_ = fit;
     document_ = request.document;
     sceneOptions_ = std::move(sceneOptionsNow);
-    worker_.publish([&](ViewUpdates& updates) {
-      updates.preparation = preparation_;
-      updates.document = document_;
-    });
   }
-  size_ = options.size;
+  options_ = structure ? std::move(options) : nullptr;
+  fit_ = fit;
   given_ = std::move(given);
   arguments_ = request.arguments;
-  governor_.reset(cuts);
+  std::size_t cuts = 0;
+  for (const Picture& picture : preparation_->pictures) {
+    if (picture.panels.empty()) cuts = std::max(cuts, possibleCuts(optionsOf(picture)).size());
+    for (const Picture& panel : picture.panels) cuts = std::max(cuts, possibleCuts(panel.options).size());
+  }
+  governor_.reset(static_cast<int>(cuts));
+  worker_.publish([&](ViewUpdates& updates) {
+    updates.preparation = preparation_;
+    updates.options = options_;
+    updates.document = document_;
+  });
 }
 
 // Without what only files need; `change` says what of it is drawn.
 Picture PictureWorker::Drawing::live(const Change& change) const {
-  const auto bare = [&](const Picture& whole, std::shared_ptr<const Primitives> primitives) {
+  const auto bare = [&](const Picture& whole, const RenderOptions& options,
+                        std::shared_ptr<const Primitives> primitives) {
     Picture picture;
     picture.input = whole.input;
-    picture.options = change(whole.options);
+    picture.options = change(options);
     picture.scene.labels = whole.scene.labels;
     picture.scene.background = whole.scene.background;
     picture.scene.camera = whole.scene.camera;
@@ -170,10 +206,10 @@ Picture PictureWorker::Drawing::live(const Change& change) const {
     return picture;
   };
   const Picture& whole = preparation_->pictures[shown_];
-  Picture picture = bare(whole, primitives_[shown_].front());
+  Picture picture = bare(whole, optionsOf(whole), primitives_[shown_].front());
   picture.scene.camera = camera_;
   for (std::size_t i = 0; i < whole.panels.size(); ++i)
-    picture.panels.push_back(bare(whole.panels[i], primitives_[shown_][i]));
+    picture.panels.push_back(bare(whole.panels[i], whole.panels[i].options, primitives_[shown_][i]));
   return picture;
 }
 
@@ -185,12 +221,13 @@ ViewFrame PictureWorker::Drawing::emptyFrame(const ViewRequest& request, const R
   frame.size = options.size;
   frame.samples = options.samples;
   frame.camera = camera_;
-  frame.pictureSize = preparation_->pictures[shown_].options.size;
+  frame.pictureSize = optionsOf(preparation_->pictures[shown_]).size;
   frame.bounds = primitives_[shown_].front()->bounds();
   return frame;
 }
 
 ViewFrame PictureWorker::Drawing::draw(const ViewRequest& request, const Change& change, FrameStage stage) {
+  drawer_->takeStats();  // of a picture that was given up
   Picture picture = live(change);
   ViewFrame frame = emptyFrame(request, picture.options, stage);
   frame.pixels.reserve(std::size_t{4} * static_cast<std::size_t>(frame.size.width) *
@@ -213,7 +250,8 @@ void PictureWorker::Drawing::drawStill(const ViewRequest& request) {
   };
   interruptible_ = true;
   const Picture& picture = preparation_->pictures[shown_];
-  if (!picture.panels.empty() && picture.options.samples > 1) {
+  const RenderOptions& options = optionsOf(picture);
+  if (!picture.panels.empty() && options.samples > 1) {
     ViewFrame frame = draw(request, oneRay, FrameStage::refining);
     worker_.publish([&](ViewUpdates& updates) { updates.frame = std::move(frame); });
   }
@@ -222,7 +260,7 @@ void PictureWorker::Drawing::drawStill(const ViewRequest& request) {
   if (picture.panels.empty())
     drawer_->preview = {[&] { return Clock::now() >= next; },
                         [&](int samples, std::span<const std::byte> rows) {
-                          ViewFrame frame = emptyFrame(request, picture.options, FrameStage::refining);
+                          ViewFrame frame = emptyFrame(request, options, FrameStage::refining);
                           frame.samples = samples;
                           frame.pixels.assign(rows.begin(), rows.end());
                           const Clock::time_point now = Clock::now();
@@ -289,8 +327,7 @@ void PictureWorker::Drawing::serve(const ViewRequest& request) {
   ViewFrame frame = draw(
       request, [&](RenderOptions o) { return reduced(std::move(o), quality); }, FrameStage::moving);
   governor_.measured(frame.milliseconds - frame.stats.compileMs, request.budgetMs);
-  frame.leftOut = possibleCuts(picture.options);
-  frame.leftOut.resize(std::min(frame.leftOut.size(), static_cast<std::size_t>(quality.cuts)));
+  frame.leftOut = cutsOf(picture, quality.cuts);
   worker_.publish([&](ViewUpdates& updates) { updates.frame = std::move(frame); });
 }
 
@@ -298,7 +335,7 @@ void PictureWorker::Drawing::save(std::uint64_t document, const std::vector<std:
   interruptible_ = false;
   drawer_->preview = {};
   const RenderOptions options = optionsFrom(arguments);
-  Preparation made = preparePictures(options, bytesOf(document, options, false));
+  Preparation made = read(document, options, false);
   for (Picture& picture : made.pictures) {
     const std::string name = picture.output;
     drawer_->draw(std::move(picture));
@@ -312,41 +349,47 @@ PictureWorker::PictureWorker(const RenderOptions& base, std::function<void()> no
     : base_(base), notify_(std::move(notify)), thread_([this] { run(); }) {}
 
 PictureWorker::~PictureWorker() {
+  finish();
+}
+
+void PictureWorker::finish() {
   {
     const std::lock_guard lock(mutex_);
     stop_ = true;
   }
   wake_.notify_one();
-  thread_.join();
+  if (thread_.joinable()) thread_.join();
 }
 
 void PictureWorker::show(ViewRequest request) {
   {
     const std::lock_guard lock(mutex_);
-    // A still picture that is no longer wanted must not hide that its settings are.
-    request.reread = request.reread || (next_ && next_->reread);
+    // A picture that is no longer wanted must not hide that its file is to be read again.
+    request.reread = request.reread || (next_ && next_->document == request.document && next_->reread);
     next_ = std::move(request);
   }
   wake_.notify_one();
 }
 
-void PictureWorker::save(std::uint64_t document, std::vector<std::string> arguments) {
+void PictureWorker::save(std::uint64_t document, std::vector<std::string> arguments,
+                         std::vector<std::string> names) {
   {
     const std::lock_guard lock(mutex_);
-    saves_.emplace_back(document, std::move(arguments));
+    saves_.push_back({document, std::move(arguments), std::move(names)});
   }
   wake_.notify_one();
 }
 
-ViewUpdates PictureWorker::take() {
+bool PictureWorker::promised(const std::string& name) const {
   const std::lock_guard lock(mutex_);
-  hasUpdates_ = false;
-  return std::exchange(updates_, {});
+  return std::any_of(saves_.begin(), saves_.end(), [&](const Save& save) {
+    return std::find(save.names.begin(), save.names.end(), name) != save.names.end();
+  });
 }
 
-bool PictureWorker::idle() const {
+ViewUpdates PictureWorker::take() {
   const std::lock_guard lock(mutex_);
-  return !working_ && !next_ && saves_.empty() && !hasUpdates_;
+  return std::exchange(updates_, {});
 }
 
 template <typename Change>
@@ -354,7 +397,6 @@ void PictureWorker::publish(Change change) {
   {
     const std::lock_guard lock(mutex_);
     change(updates_);
-    hasUpdates_ = true;
   }
   notify_();
 }
@@ -369,14 +411,12 @@ void PictureWorker::run() {
   std::unique_lock lock(mutex_);
   for (;;) {
     wake_.wait(lock, [this] { return stop_ || next_ || !saves_.empty(); });
-    if (stop_) return;
-    working_ = true;
+    if (stop_ && saves_.empty()) return;
     const bool saves = !saves_.empty();
-    std::pair<std::uint64_t, std::vector<std::string>> save;
+    Save save;
     ViewRequest request;
     if (saves) {
-      save = std::move(saves_.front());
-      saves_.erase(saves_.begin());
+      save = saves_.front();
     } else {
       request = std::move(*std::exchange(next_, std::nullopt));
     }
@@ -384,7 +424,7 @@ void PictureWorker::run() {
     std::string failure;
     try {
       if (saves) {
-        drawing.save(save.first, save.second);
+        drawing.save(save.document, save.arguments);
       } else {
         drawing.serve(request);
       }
@@ -398,16 +438,17 @@ void PictureWorker::run() {
     } catch (const std::exception& error) {
       failure = error.what();
     }
-    publish([&](ViewUpdates& updates) {
-      working_ = false;
-      if (failure.empty()) return;
-      if (saves) {
-        updates.messages.push_back(failure);
-      } else {
-        updates.failure = {request.number, failure};
-      }
-    });
+    if (!failure.empty()) {
+      publish([&](ViewUpdates& updates) {
+        if (saves) {
+          updates.messages.push_back(failure);
+        } else {
+          updates.failure = {request.number, request.reread, failure};
+        }
+      });
+    }
     lock.lock();
+    if (saves) saves_.pop_front();
   }
 }
 

@@ -6,13 +6,13 @@
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
-#include <utility>
 #include <vector>
 
 #include "app/panels.h"
@@ -62,13 +62,20 @@ struct ViewHits {
   std::vector<PanelPlace> places;  ///< of its panels, if it has some
 };
 
+/// A request that failed; what was shown before still is.
+struct ViewFailure {
+  std::uint64_t number = 0;  ///< of the request
+  bool reread = false;       ///< what failed was to read the file again, or may have been
+  std::string message;       ///< one line
+};
+
 struct ViewUpdates {
   std::optional<ViewFrame> frame;
   std::optional<ViewHits> hits;
-  std::shared_ptr<const Preparation> preparation;  ///< if there is a new one
+  std::shared_ptr<const Preparation> preparation;  ///< if it or its options are new
+  std::shared_ptr<const RenderOptions> options;    ///< of all its pictures; nothing = each has its own
   std::uint64_t document = 0;                      ///< whose
-  /// A request that failed, and why in one line; what was shown before still is.
-  std::optional<std::pair<std::uint64_t, std::string>> failure;
+  std::optional<ViewFailure> failure;
   std::vector<std::string> messages;  ///< what became of pictures that were to be saved
 };
 
@@ -83,14 +90,20 @@ class PictureWorker {
 
   void show(ViewRequest request);
   /// Draws and writes as `meniscus render` with these arguments does, of the file as it was read for the
-  /// document.
-  void save(std::uint64_t document, std::vector<std::string> arguments);
+  /// document. `names`: of the files that come of it.
+  void save(std::uint64_t document, std::vector<std::string> arguments, std::vector<std::string> names);
+  /// Whether a file of this name is still to be written by save().
+  bool promised(const std::string& name) const;
   ViewUpdates take();
-  /// Nothing to do and nothing to take.
-  bool idle() const;
+  /// Writes what is still to be saved, and ends the thread; nothing is drawn after it.
+  void finish();
 
  private:
   class Drawing;
+  struct Save {
+    std::uint64_t document = 0;
+    std::vector<std::string> arguments, names;
+  };
   void run();
   template <typename Change>
   void publish(Change change);
@@ -101,9 +114,9 @@ class PictureWorker {
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   std::optional<ViewRequest> next_;
-  std::vector<std::pair<std::uint64_t, std::vector<std::string>>> saves_;
+  std::deque<Save> saves_;  // the first may be on its way
   ViewUpdates updates_;
-  bool hasUpdates_ = false, working_ = false, stop_ = false;
+  bool stop_ = false;
   std::thread thread_;
 };
 

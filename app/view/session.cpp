@@ -74,8 +74,31 @@ std::string nameOf(const Molecule& molecule, std::uint32_t atom) {
   return chain.empty() ? name : fmt::format("{}, chain {}", name, chain);
 }
 
-Document::Document(std::string file, GivenOptions given)
-    : file_(std::move(file)), scene_(isSceneFile(file_)), given_(std::move(given)) {}
+std::vector<const SceneObject*> objectsByMolecule(const Scene& scene) {
+  std::vector<const SceneObject*> objects;
+  for (const SceneObject& object : scene.objects)
+    if (std::none_of(objects.begin(), objects.end(),
+                     [&](const SceneObject* known) { return known->molecule == object.molecule; }))
+      objects.push_back(&object);
+  return objects;
+}
+
+void updatePicks(std::vector<Pick>& picks, const Scene& scene) {
+  const std::vector<const SceneObject*> objects = objectsByMolecule(scene);
+  std::erase_if(picks, [&](Pick& pick) {
+    if (pick.cid.empty() || pick.molecule >= objects.size()) return true;
+    const SceneObject& object = *objects[pick.molecule];
+    const std::vector<std::uint32_t> atoms = selectAtoms(*object.molecule, pick.cid);
+    if (atoms.size() != 1) return true;
+    if (!pick.copy)
+      pick.position =
+          object.placements.front().transform * glm::dvec4(object.molecule->positions[atoms[0]], 1.0);
+    return false;
+  });
+}
+
+Document::Document(std::string file, GivenOptions given, bool isScene)
+    : file_(std::move(file)), scene_(isScene || isSceneFile(file_)), given_(std::move(given)) {}
 
 std::optional<std::string> Document::value(std::string_view option) const {
   std::optional<std::string> last;
@@ -167,7 +190,7 @@ std::optional<std::string> Document::measureOption() const {
   if (picks.size() < 2) return std::nullopt;
   std::string option;
   for (const Pick& p : picks) {
-    if (p.copy || p.cid.empty()) return std::nullopt;
+    if (p.copy || p.molecule != 0 || p.cid.empty()) return std::nullopt;
     option += (option.empty() ? "" : ";") + p.cid;
   }
   return option;

@@ -14,6 +14,7 @@
 #include "app/scene/settings.h"
 #include "core/image.h"
 #include "core/primitives.h"
+#include "core/scene.h"
 #include "core/view.h"
 
 namespace meniscus {
@@ -23,8 +24,16 @@ struct Pick {
   std::string cid;   ///< that selects it and no other atom of its molecule
   std::string name;  ///< for people: "ALA 12 CA, chain A"
   glm::dvec3 position{0.0};
-  bool copy = false;  ///< it belongs to another placement of its molecule than the first
+  bool copy = false;         ///< it belongs to another placement of its molecule than the first
+  std::size_t molecule = 0;  ///< its number in objectsByMolecule()
 };
+
+/// Of each molecule of a scene, the first object that shows it.
+std::vector<const SceneObject*> objectsByMolecule(const Scene& scene);
+
+/// The atoms that were picked, in the scene as it is now: those that it no longer has go, and others may have
+/// moved.
+void updatePicks(std::vector<Pick>& picks, const Scene& scene);
 
 /// A CID for an atom of a molecule, and its name. An empty CID if none tells it from all others.
 std::string cidOf(const Molecule& molecule, std::uint32_t atom);
@@ -39,7 +48,8 @@ inline constexpr std::array<Representation, 8> kRepresentationsOffered{
 /// A file that is open, and how it is drawn.
 class Document {
  public:
-  Document(std::string file, GivenOptions given);
+  /// A scene if `isScene` says so or the name does (.mvsj, .mvsx).
+  Document(std::string file, GivenOptions given, bool isScene = false);
 
   const std::string& file() const { return file_; }
   bool isScene() const { return scene_; }
@@ -78,7 +88,8 @@ class Document {
   std::vector<Pick> picks;  ///< at most four
   /// A fifth begins anew; an atom that is picked already is let go.
   void pick(Pick pick);
-  /// --measure for what is picked; nothing unless two to four are, all of the first placement.
+  /// --measure for what is picked; nothing unless two to four are, all of the first placement of the first
+  /// molecule.
   std::optional<std::string> measureOption() const;
 
  private:

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
@@ -15,7 +16,6 @@
 #include "app/view/overlays.h"
 #include "app/view/panels.h"
 #include "core/camera_fit.h"
-#include "io/structure_reader.h"
 
 namespace meniscus {
 namespace {
@@ -37,20 +37,28 @@ ImageSize windowSizeFor(const RenderOptions& base) {
   return {std::min(base.size.width, 1600) + kPanelWidth, std::min(base.size.height, 1000)};
 }
 
+// For a pattern of names (app/output_name.h).
+std::string withoutPlaceholders(const std::string& text) {
+  std::string escaped;
+  for (const char c : text) escaped.append(c == '{' || c == '}' ? 2 : 1, c);
+  return escaped;
+}
+
 }  // namespace
 
-Viewer::Viewer(const RenderOptions& base, const std::vector<std::string>& files)
+Viewer::Viewer(const RenderOptions& base)
     : base_(base), window_("Meniscus", windowSizeFor(base)), worker_(base, &Window::wake) {
   window_.onKey = [this](int key, bool control, bool shift) { handleKey(key, control, shift); };
   window_.onDrop = [this](const std::vector<std::string>& dropped) {
     for (const std::string& file : dropped) open(file);
   };
-  for (const std::string& file : files) open(file, base.given);
+  for (const std::string& file : base.files) open(file, base.given);
+  for (const std::string& scene : base.scenes) open(scene, base.given, true);
   current_ = 0;
 }
 
-void Viewer::open(const std::string& file, const GivenOptions& given) {
-  documents_.push_back({nextId_++, std::make_unique<Document>(file, given), nullptr});
+void Viewer::open(const std::string& file, const GivenOptions& given, bool isScene) {
+  documents_.push_back({nextId_++, std::make_unique<Document>(file, given, isScene), nullptr, nullptr});
   current_ = documents_.size() - 1;
 }
 
@@ -96,6 +104,18 @@ void Viewer::run() {
     if (--redraws > 0 && dragging_) redraws = 0;
     if (window_.answersNext()) redraws = kRedraws;
   }
+  finishSaving();
+}
+
+// What was to be saved is, though the window is closed; what fails then is said where there still is a place.
+void Viewer::finishSaving() {
+  window_.hide();
+  worker_.finish();
+  for (const std::string& message : worker_.take().messages) {
+    const bool isError = !message.starts_with("saved ");
+    say(message, isError);
+    if (isError) std::fprintf(stderr, "meniscus: %s\n", message.c_str());
+  }
 }
 
 double Viewer::secondsToWait() const {
@@ -134,6 +154,7 @@ void Viewer::submit() {
     moving_ = false;
   } else {
     lastChange_ = Clock::now();
+    wantedPick_.reset();  // in another picture
   }
   request.number = asked_.number + 1;
   request.document = open.id;
@@ -155,12 +176,16 @@ void Viewer::submit() {
 void Viewer::takeUpdates() {
   ViewUpdates updates = worker_.take();
   if (updates.preparation) {
-    for (Open& open : documents_)
-      if (open.id == updates.document) open.made = updates.preparation;
-    if (!updates.preparation->unsupported.empty())
-      say(fmt::format("{} (and {} more that are not drawn)", updates.preparation->unsupported.front(),
-                      updates.preparation->unsupported.size() - 1));
-    updatePicks();
+    for (Open& open : documents_) {
+      if (open.id != updates.document) continue;
+      open.options = updates.options;
+      if (open.made == updates.preparation) continue;
+      open.made = updates.preparation;
+      const std::vector<std::string>& unsupported = open.made->unsupported;
+      if (!unsupported.empty())
+        say(fmt::format("{} (and {} more that are not drawn)", unsupported.front(), unsupported.size() - 1));
+      if (&open == &documents_[current_]) updatePicks(document()->picks, shownPicture()->scene);
+    }
   }
   if (updates.frame) {
     frame_ = std::move(updates.frame);
@@ -182,21 +207,21 @@ void Viewer::takeUpdates() {
     resolvePick();
   }
   for (const std::string& message : updates.messages) say(message, !message.starts_with("saved "));
-  if (updates.failure) takeFailure(updates.failure->first, updates.failure->second);
+  if (updates.failure) takeFailure(*updates.failure);
 }
 
 // A change that cannot be drawn is undone; a file that cannot be read is closed.
-void Viewer::takeFailure(std::uint64_t number, const std::string& message) {
-  say(message, true);
-  if (number != asked_.number || documents_.empty()) return;
+void Viewer::takeFailure(const ViewFailure& failure) {
+  say(failure.message, true);
+  if (failure.number != asked_.number || documents_.empty()) return;
   playing = false;
   const Open& open = documents_[current_];
   if (!open.made) {
     closeDocument(current_);
-  } else if (asked_.reread) {
+  } else if (failure.reread) {
     again_ = true;  // of what was read before
   } else if (askedRevision_ == open.drawnRevision || !open.document->undo()) {
-    failed_ = number;
+    failed_ = failure.number;
   }
 }
 
@@ -211,16 +236,21 @@ bool Viewer::finished() const {
 }
 
 const RenderOptions* Viewer::options() const {
+  const Picture* shown = shownPicture();
+  if (!shown) return nullptr;
+  const Open& open = documents_[current_];
+  return open.options ? open.options.get() : &shown->options;
+}
+
+const Picture* Viewer::shownPicture() const {
   const Preparation* made = preparation();
-  return made ? &made->pictures.front().options : nullptr;
+  if (!made) return nullptr;
+  return &made->pictures[std::min(documents_[current_].document->shown, made->pictures.size() - 1)];
 }
 
 const Molecule* Viewer::molecule() const {
-  const Preparation* made = preparation();
-  if (!made) return nullptr;
-  const std::size_t shown = std::min(documents_[current_].document->shown, made->pictures.size() - 1);
-  const auto& objects = made->pictures[shown].scene.objects;
-  return objects.empty() ? nullptr : objects.front().molecule.get();
+  const Picture* shown = shownPicture();
+  return !shown || shown->scene.objects.empty() ? nullptr : shown->scene.objects.front().molecule.get();
 }
 
 std::optional<Camera> Viewer::camera() const {
@@ -242,14 +272,10 @@ void Viewer::resetCamera() {
 
 void Viewer::lookAlong(int axis) {
   std::optional<Camera> now = camera();
-  const Preparation* made = preparation();
-  if (!now || !made) return;
+  const Picture* shown = shownPicture();
+  if (!now || !shown) return;
   std::vector<FitSphere> spheres;
-  const std::size_t shown = std::min(document()->shown, made->pictures.size() - 1);
-  for (const SceneObject& object : made->pictures[shown].scene.objects) {
-    const std::vector<FitSphere> some = fitSpheres(object);
-    spheres.insert(spheres.end(), some.begin(), some.end());
-  }
+  addFitSpheres(shown->scene.objects, spheres);
   now->orientation = axis < 0 ? principalAxes(spheres, size_.height > size_.width) : lookDownAxis(axis);
   document()->camera = now;
 }
@@ -263,16 +289,22 @@ void Viewer::toggleOrthographic() {
   }
 }
 
-std::string Viewer::nextName() const {
-  if (documents_.empty()) return "picture.png";
-  const std::string stem = stemOf(documents_[current_].document->file());
+Viewer::Output Viewer::nextOutput() const {
+  const Document& shown = *documents_[current_].document;
   // The pictures of several states tell themselves apart.
   const Preparation* made = preparation();
-  const bool states = documents_[current_].document->isScene() && made && made->pictures.size() > 1;
+  const bool states = shown.isScene() && made && made->pictures.size() > 1;
+  const std::string stem = withoutPlaceholders(stemOf(shown.file()));
   for (int i = 1;; ++i) {
-    const std::string number = i == 1 ? "" : fmt::format("-{}", i);
-    if (states) return fmt::format("{}-{{state}}.png", stem);
-    if (!std::filesystem::exists(stem + number + ".png")) return stem + number + ".png";
+    Output output{stem + (i == 1 ? "" : fmt::format("-{}", i)) + (states ? "-{state}.png" : ".png"), {}};
+    const OutputPattern pattern(output.pattern);
+    if (!states) output.names.push_back(pattern.nameFor(shown.file(), {}));
+    for (std::size_t k = 0; states && k < made->pictures.size(); ++k)
+      output.names.push_back(pattern.nameFor(shown.file(), made->pictures[k].place));
+    if (std::none_of(output.names.begin(), output.names.end(), [&](const std::string& name) {
+          return std::filesystem::exists(name) || worker_.promised(name);
+        }))
+      return output;
   }
 }
 
@@ -282,14 +314,13 @@ std::vector<std::string> Viewer::argumentsFor(const std::string& output) {
   std::optional<Camera> seen = shown.camera;
   // One camera suits all models; a model alone would get its own.
   if (shown.oneByOne && !shown.isScene()) seen = camera();
-  if (const Preparation* made = preparation(); made && shown.oneByOne && !shown.isScene())
-    model = made->pictures[std::min(shown.shown, made->pictures.size() - 1)].place.model;
+  if (shownPicture() && shown.oneByOne && !shown.isScene()) model = shownPicture()->place.model;
   return renderArguments(shown, seen, size_, output, model);
 }
 
 void Viewer::copyCommand() {
-  if (!document()) return;
-  window_.copy(commandLine(argumentsFor(nextName())));
+  if (!document() || size_.width < 1) return;
+  window_.copy(commandLine(argumentsFor(nextOutput().pattern)));
   say("the command is on the clipboard");
 }
 
@@ -308,17 +339,17 @@ void Viewer::copyMeasures() {
 }
 
 void Viewer::save() {
-  if (!document()) return;
-  const std::string name = nextName();
-  say("saving " + name);
-  worker_.save(documents_[current_].id, argumentsFor(name));
+  if (!document() || size_.width < 1) return;
+  Output output = nextOutput();
+  say("saving " + output.pattern);
+  worker_.save(documents_[current_].id, argumentsFor(output.pattern), std::move(output.names));
 }
 
 void Viewer::keepMeasure() {
   if (!document()) return;
   const std::optional<std::string> option = document()->measureOption();
   if (!option) {
-    say("click two, three or four atoms first; those of copies are only shown");
+    say("click two, three or four atoms first; those of copies and of further models are only shown");
     return;
   }
   if (document()->isScene()) {
@@ -338,23 +369,7 @@ void Viewer::reread() {
 void Viewer::showModel(std::size_t index) {
   if (!document()) return;
   document()->shown = index;
-  updatePicks();
-}
-
-// Models and settings move atoms and take some away.
-void Viewer::updatePicks() {
-  const Molecule* shown = molecule();
-  if (!shown) return;
-  const std::size_t index = std::min(document()->shown, preparation()->pictures.size() - 1);
-  const SceneObject& object = preparation()->pictures[index].scene.objects.front();
-  std::erase_if(document()->picks, [&](Pick& pick) {
-    const std::vector<std::uint32_t> atoms =
-        pick.cid.empty() ? std::vector<std::uint32_t>() : selectAtoms(*shown, pick.cid);
-    if (atoms.size() != 1) return true;
-    if (!pick.copy)
-      pick.position = object.placements.front().transform * glm::dvec4(shown->positions[atoms[0]], 1.0);
-    return false;
-  });
+  if (const Picture* shown = shownPicture()) updatePicks(document()->picks, shown->scene);
 }
 
 void Viewer::advanceModels() {

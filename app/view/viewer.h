@@ -20,8 +20,8 @@ namespace meniscus {
 
 class Viewer {
  public:
-  /// Opens a window whose picture has this size, and these files.
-  Viewer(const RenderOptions& base, const std::vector<std::string>& files);
+  /// Opens a window whose picture has the options' size, and their files and scenes.
+  explicit Viewer(const RenderOptions& base);
   /// Until the window is closed.
   void run();
   /// What happened, as JSON.
@@ -50,7 +50,7 @@ class Viewer {
   bool finished() const;
 
   // --- Actions.
-  void open(const std::string& file, const GivenOptions& given = {});
+  void open(const std::string& file, const GivenOptions& given = {}, bool isScene = false);
   void showDocument(std::size_t index);
   void moveCamera(const Camera& camera);
   void resetCamera();
@@ -63,8 +63,6 @@ class Viewer {
   void reread();
   void showModel(std::size_t index);
   void say(const std::string& message, bool isError = false);
-  /// The name of the next picture that is saved.
-  std::string nextName() const;
 
   // --- What is open in the window; no part of a picture.
   bool panelsShown = true, helpShown = false, budgetShown = false, playing = false;
@@ -77,7 +75,8 @@ class Viewer {
     std::uint64_t id = 0;
     std::unique_ptr<Document> document;
     std::shared_ptr<const Preparation> made;
-    std::uint64_t drawnRevision = 0;  ///< of the document's options, that could be drawn
+    std::shared_ptr<const RenderOptions> options;  ///< of all its pictures; nothing = each has its own
+    std::uint64_t drawnRevision = 0;               ///< of the document's options, that could be drawn
   };
   /// Where the picture is in the window.
   struct Area {
@@ -91,10 +90,12 @@ class Viewer {
   void handleKey(int key, bool control, bool shift);
   void dragLight(glm::dvec2 by);
   void takeUpdates();
-  void takeFailure(std::uint64_t number, const std::string& message);
+  void takeFailure(const ViewFailure& failure);
+  void finishSaving();
   void resolvePick();
-  void updatePicks();
+  const Picture* shownPicture() const;  ///< nothing before the file is read
   std::uint32_t idAt(glm::dvec2 pixel) const;
+  const Scene& sceneAt(glm::dvec2 pixel) const;  ///< of hits_
   std::optional<PlacedAtom> atomAt(glm::dvec2 pixel) const;
   glm::dvec2 cursor() const;  ///< in pixels of the picture
   /// A panel, or the whole picture: its size, and where its lower left corner is.
@@ -111,6 +112,12 @@ class Viewer {
   double secondsToWait() const;
   Clock::duration stillAfter() const;
   void closeDocument(std::size_t index);
+  /// Names that no file has and none will have that is still to be written.
+  struct Output {
+    std::string pattern;             ///< as -o
+    std::vector<std::string> names;  ///< that come of it
+  };
+  Output nextOutput() const;
   std::vector<std::string> argumentsFor(const std::string& output);
 
   RenderOptions base_;
@@ -121,7 +128,7 @@ class Viewer {
   std::size_t current_ = 0;
   std::uint64_t nextId_ = 1;
 
-  ImageSize size_;
+  ImageSize size_{0, 0};  // before anything is laid out
   Area area_;
   std::optional<ViewFrame> frame_, full_;  // the newest, and the newest full one; without pixels
   std::optional<ViewHits> hits_;

@@ -82,14 +82,16 @@ std::uint32_t Viewer::idAt(glm::dvec2 pixel) const {
       .id[static_cast<std::size_t>(y) * static_cast<std::size_t>(size.width) + static_cast<std::size_t>(x)];
 }
 
-std::optional<PlacedAtom> Viewer::atomAt(glm::dvec2 pixel) const {
-  const std::uint32_t id = idAt(pixel);
-  if (id == 0) return std::nullopt;
+const Scene& Viewer::sceneAt(glm::dvec2 pixel) const {
   const Picture& picture = hits_->preparation->pictures[hits_->shown];
   for (std::size_t i = 0; i < hits_->places.size(); ++i)
-    if (hits_->places[i].holds(pixel.x, hits_->image.size.height - pixel.y))
-      return atomOfId(picture.panels[i].scene, id);
-  return atomOfId(picture.scene, id);
+    if (hits_->places[i].holds(pixel.x, hits_->image.size.height - pixel.y)) return picture.panels[i].scene;
+  return picture.scene;
+}
+
+std::optional<PlacedAtom> Viewer::atomAt(glm::dvec2 pixel) const {
+  const std::uint32_t id = idAt(pixel);
+  return id == 0 ? std::nullopt : atomOfId(sceneAt(pixel), id);
 }
 
 void Viewer::handleMouse() {
@@ -196,11 +198,13 @@ void Viewer::resolvePick() {
     return;
   }
   const Molecule& shown = *atom->molecule;
-  const auto& objects = hits_->preparation->pictures[hits_->shown].scene.objects;
-  const bool first = atom->molecule == objects.front().molecule &&
-                     atom->position == glm::dvec3(objects.front().placements.front().transform *
+  const std::vector<const SceneObject*> objects = objectsByMolecule(sceneAt(wanted.pixel));
+  const auto object = std::find_if(objects.begin(), objects.end(),
+                                   [&](const SceneObject* o) { return o->molecule == atom->molecule; });
+  const bool first = atom->position == glm::dvec3((*object)->placements.front().transform *
                                                   glm::dvec4(shown.positions[atom->atom], 1.0));
-  document()->pick({cidOf(shown, atom->atom), nameOf(shown, atom->atom), atom->position, !first});
+  document()->pick({cidOf(shown, atom->atom), nameOf(shown, atom->atom), atom->position, !first,
+                    static_cast<std::size_t>(object - objects.begin())});
 }
 
 // Models that lie over each other come one by one then.

@@ -188,6 +188,10 @@ void Window::close() {
   glfwSetWindowShouldClose(window_, GLFW_TRUE);
 }
 
+void Window::hide() {
+  glfwHideWindow(window_);
+}
+
 void Window::wait(double seconds) {
   if (seconds < 0) {
     glfwWaitEvents();

@@ -46,6 +46,7 @@ class Window {
   /// Whether the user wants it closed.
   bool closed() const;
   void close();
+  void hide();
   /// Waits until something happens, `seconds` at most (less than 0: for ever).
   void wait(double seconds);
   /// Ends a wait; from any thread.

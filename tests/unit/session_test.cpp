@@ -4,8 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <memory>
 
 #include "app/render_options.h"
 #include "app/view/camera_moves.h"
@@ -51,6 +54,27 @@ TEST(Document, ADraggedSliderIsOneChange) {
   EXPECT_FALSE(document.canUndo());
 }
 
+TEST(Document, AColourThatIsBeingChosenIsOneChange) {
+  Document document("a.pdb", {{"show", "//A=cartoon:chain"}});
+  for (const char* color : {"#000001", "#000002"})
+    document.setAll("show", {std::string("//A=cartoon:") + color}, true);
+  document.endChange();
+  document.setAll("show", {"//A=cartoon:#000003"}, true);
+  EXPECT_TRUE(document.undo());
+  EXPECT_EQ(document.value("show"), "//A=cartoon:#000002");
+  EXPECT_TRUE(document.undo());
+  EXPECT_EQ(document.value("show"), "//A=cartoon:chain");
+}
+
+TEST(Document, IsASceneByItsNameOrWhereItIsSaid) {
+  EXPECT_TRUE(Document("a.mvsx", {}).isScene());
+  EXPECT_FALSE(Document("a.json", {}).isScene());
+  const Document said("a.json", {}, true);
+  EXPECT_TRUE(said.isScene());
+  EXPECT_EQ(commandLine(renderArguments(said, {}, {8, 8}, "o.png")),
+            "meniscus render --scene a.json -o o.png --size=8x8");
+}
+
 TEST(Document, NothingChangedIsNoStep) {
   Document document("a.pdb", {{"fog", "0.5"}});
   const std::uint64_t revision = document.revision();
@@ -81,6 +105,57 @@ TEST(Document, PicksOfTwoToFourMeasure) {
   copy.copy = true;
   document.pick(copy);
   EXPECT_FALSE(document.measureOption());
+  document.picks.pop_back();
+  document.pick(pick(8));
+  EXPECT_TRUE(document.measureOption());
+  document.picks.back().molecule = 1;  // --measure is about the first
+  EXPECT_FALSE(document.measureOption());
+}
+
+SceneObject objectOf(std::shared_ptr<const Molecule> molecule, glm::dvec3 by) {
+  SceneObject object;
+  object.placements = placeOnce(*molecule);
+  object.placements.front().transform = glm::translate(glm::dmat4(1), by);
+  object.molecule = std::move(molecule);
+  return object;
+}
+
+TEST(UpdatePicks, FollowsEachAtomInItsOwnMolecule) {
+  Logger logger;
+  const auto read = [&](const char* name) {
+    return std::make_shared<const Molecule>(std::move(
+        readStructure(test::projectFile(std::string("molecules/") + name), {}, logger).models.front()));
+  };
+  const auto dna = read("133d.pdb"), ubiquitin = read("1ubq.pdb");
+  Scene scene;
+  scene.objects = {objectOf(dna, {}), objectOf(dna, {7, 7, 7}), objectOf(ubiquitin, {1, 2, 3})};
+  ASSERT_EQ(objectsByMolecule(scene).size(), 2u);
+  EXPECT_EQ(objectsByMolecule(scene)[1]->molecule, ubiquitin);
+  const std::string ofDna = cidOf(*dna, 5), ofUbiquitin = cidOf(*ubiquitin, 40);
+  ASSERT_EQ(selectAtoms(*dna, ofUbiquitin).size(), 0u);
+  const glm::dvec3 far(1e3);
+  std::vector<Pick> picks{{ofDna, "a", far, false, 0},
+                          {ofUbiquitin, "b", far, false, 1},
+                          {ofUbiquitin, "copy", far, true, 1},
+                          {ofUbiquitin, "of a molecule that is gone", far, false, 2},
+                          {ofUbiquitin, "of an atom that is gone", far, false, 0},
+                          {"", "without a name", far, false, 0}};
+  updatePicks(picks, scene);
+  ASSERT_EQ(picks.size(), 3u);
+  EXPECT_EQ(picks[0].position, dna->positions[5]);
+  EXPECT_EQ(picks[1].position, ubiquitin->positions[40] + glm::dvec3(1, 2, 3));
+  EXPECT_EQ(picks[2].position, far);
+  scene.objects.pop_back();
+  updatePicks(picks, scene);
+  ASSERT_EQ(picks.size(), 1u);
+  EXPECT_EQ(picks[0].name, "a");
+}
+
+TEST(RepresentationsOffered, AreAllAndHaveNamesThatAreRead) {
+  for (const Representation offered : kRepresentationsOffered) {
+    EXPECT_EQ(parseRepresentation("--representation", representationName(offered)), offered);
+    EXPECT_EQ(std::count(kRepresentationsOffered.begin(), kRepresentationsOffered.end(), offered), 1);
+  }
 }
 
 TEST(RenderArguments, AreReadBackToTheLastDigit) {

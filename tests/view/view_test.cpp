@@ -168,7 +168,12 @@ TEST_F(WindowTest, BrokenAndMissingFilesAreMessages) {
   ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
   key("Next");  // to the broken one, which is closed
   ASSERT_NO_FATAL_FAILURE(waitForTitle("good.pdb - Meniscus"));
-  // What was read stays when the file goes.
+  // What was read stays when the file is being written again, and when it goes.
+  std::filesystem::resize_file(folder_ / "good.pdb", 0);
+  key("F5");
+  ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
+  key("ctrl+s");
+  ASSERT_NO_FATAL_FAILURE(waitForFile("good.png"));
   std::filesystem::remove(folder_ / "good.pdb");
   key("2");
   ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
@@ -182,6 +187,8 @@ TEST_F(WindowTest, BrokenAndMissingFilesAreMessages) {
   EXPECT_EQ(quit(), 0);
   const nlohmann::json said = messages(folder_ / "stats.json");
   EXPECT_TRUE(anyContains(said, "broken.pdb")) << said;
+  EXPECT_TRUE(anyContains(said, "good.pdb: is empty")) << said;
+  EXPECT_TRUE(anyContains(said, "saved good.png")) << said;
   EXPECT_TRUE(anyContains(said, "good.pdb: no such file")) << said;
   EXPECT_TRUE(anyContains(said, "nothing that its representation draws")) << said;
 }
@@ -215,7 +222,37 @@ TEST_F(WindowTest, IsResized) {
   ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
   key("ctrl+c");
   EXPECT_NE(clipboard().find("--size=1280x1024"), std::string::npos) << clipboard();
+  // A camera of one's own stays what it is while the window changes; reset fits it to what the window is now.
+  drag(500, 500, 80, 30);
+  ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
+  resize(320, 640);
+  ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
+  ASSERT_NO_FATAL_FAILURE(saveAndCompare("adrenaline.png"));
+  key("r");
+  ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
+  ASSERT_NO_FATAL_FAILURE(saveAndCompare("adrenaline.png"));
+  EXPECT_EQ(clipboard().find("--orient"), std::string::npos) << clipboard();
   EXPECT_EQ(quit(), 0);
+}
+
+TEST_F(WindowTest, WhatIsToBeSavedHasNamesOfItsOwnAndIsWrittenBeforeTheEnd) {
+  std::filesystem::copy(projectFile("tests/data/structures/models.pdb"), folder_ / "a{b}.pdb");
+  ASSERT_EQ(runCommand("meniscus render 'a{b}.pdb' -o '{model}.png' --model all --size 64x48 "
+                       "--samples 1 --save-scene s.mvsj",
+                       folder_.path())
+                .exitCode,
+            0);
+  ASSERT_NO_FATAL_FAILURE(open({"a{b}.pdb", "s.mvsj", "--size", "320x240", "--samples", "64"}));
+  ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
+  for (int i = 0; i < 3; ++i) key("ctrl+s");
+  key("Next");
+  ASSERT_NO_FATAL_FAILURE(waitForTitle("s.mvsj - Meniscus"));
+  for (int i = 0; i < 2; ++i) key("ctrl+s");
+  EXPECT_EQ(quit(), 0);
+  for (const char* name : {"a{b}.png", "a{b}-2.png", "a{b}-3.png", "s-3.png", "s-9.png", "s-2-3.png", "s-2-9.png"})
+    EXPECT_FALSE(readFile(folder_ / name).empty()) << name;
+  EXPECT_EQ(readFile(folder_ / "s-3.png"), readFile(folder_ / "s-2-3.png"));
+  EXPECT_EQ(readFile(folder_ / "view.log"), "");
 }
 
 TEST_F(WindowTest, DividerIsDragged) {
@@ -225,16 +262,10 @@ TEST_F(WindowTest, DividerIsDragged) {
   ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
   drag(kPanel + 160, 120, -80, 0);
   ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
-  key("ctrl+s");
-  waitFor("a picture", [&] { return std::filesystem::exists(folder_ / "adrenaline.png"); });
-  std::filesystem::rename(folder_ / "adrenaline.png", folder_ / "saved.png");
-  key("ctrl+c");
+  ASSERT_NO_FATAL_FAILURE(saveAndCompare("adrenaline.png"));
   const std::string command = clipboard();
   EXPECT_NE(command.find("--divider=0.25"), std::string::npos) << command;
   EXPECT_EQ(command.find("--orient"), std::string::npos) << command;  // the molecule has not turned
-  const ProcessResult again = runCommand(command, folder_.path());
-  ASSERT_EQ(again.exitCode, 0) << again.err;
-  EXPECT_TRUE(readFile(folder_ / "adrenaline.png") == readFile(folder_ / "saved.png"));
   EXPECT_EQ(quit(), 0);
 }
 
@@ -252,14 +283,7 @@ TEST_F(WindowTest, ModelsArePlayedAndSavedOneByOne) {
   });
   key("space");
   ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
-  key("ctrl+s");
-  waitFor("a picture", [&] { return std::filesystem::exists(folder_ / "models.png"); });
-  std::filesystem::rename(folder_ / "models.png", folder_ / "saved.png");
-  key("ctrl+c");
-  command = clipboard();
-  const ProcessResult again = runCommand(command, folder_.path());
-  ASSERT_EQ(again.exitCode, 0) << command << again.err;
-  EXPECT_TRUE(readFile(folder_ / "models.png") == readFile(folder_ / "saved.png")) << command;
+  ASSERT_NO_FATAL_FAILURE(saveAndCompare("models.png"));
   EXPECT_EQ(quit(), 0);
 }
 
@@ -272,19 +296,30 @@ TEST_F(WindowTest, SceneIsDrawnFromWhereItIsSeen) {
                  folder_.path())
           .exitCode,
       0);
-  ASSERT_NO_FATAL_FAILURE(open({"scene.mvsj", "--size", "320x240"}));
-  ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
+  // By --scene, whatever its name; of the others --strict takes one no more than --offline the other.
+  std::filesystem::rename(folder_ / "scene.mvsj", folder_ / "scene.json");
+  std::string odd = readFile(folder_ / "scene.json");
+  const std::string children = "\"children\":";
+  const std::size_t first = odd.find(children);
+  ASSERT_NE(first, std::string::npos);
+  odd.insert(odd.find('[', first) + 1, R"({"kind":"transition"},)");
+  writeFile(folder_ / "odd.json", odd);
+  std::string web = readFile(folder_ / "scene.json");
+  const std::string url = "\"url\": \"";
+  ASSERT_NE(web.find(url), std::string::npos);
+  web.insert(web.find(url) + url.size(), "https://example.invalid");
+  writeFile(folder_ / "web.json", web);
+  ASSERT_NO_FATAL_FAILURE(open({"--scene", "odd.json", "--scene", "web.json", "--scene", "scene.json",
+                                "--strict", "--offline", "--cache", "cache", "--size", "320x240"}));
+  ASSERT_NO_FATAL_FAILURE(waitForTitle("scene.json - Meniscus"));
   drag(kPanel + 100, 100, 50, 20);
   ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
-  key("ctrl+s");
-  waitFor("a picture", [&] { return std::filesystem::exists(folder_ / "scene.png"); });
-  std::filesystem::rename(folder_ / "scene.png", folder_ / "saved.png");
-  key("ctrl+c");
-  const ProcessResult again = runCommand(clipboard(), folder_.path());
-  ASSERT_EQ(again.exitCode, 0) << again.err;
-  EXPECT_TRUE(readFile(folder_ / "scene.png") == readFile(folder_ / "saved.png"));
-  EXPECT_FALSE(readFile(folder_ / "first.png") == readFile(folder_ / "saved.png"));
+  ASSERT_NO_FATAL_FAILURE(saveAndCompare("scene.png"));
+  EXPECT_FALSE(readFile(folder_ / "first.png") == readFile(folder_ / "scene.png"));
   EXPECT_EQ(quit(), 0);
+  const nlohmann::json said = messages(folder_ / "stats.json");
+  EXPECT_TRUE(anyContains(said, "(--strict)")) << said;
+  EXPECT_TRUE(anyContains(said, "leave out --offline once")) << said;
 }
 
 TEST(ViewWithoutDisplay, SaysSoAndNamesRender) {

@@ -133,6 +133,10 @@ void WindowTest::waitForTitle(const std::string& wanted) {
   waitFor("the title '" + wanted + "'", [&] { return title() == wanted; });
 }
 
+void WindowTest::waitForFile(const std::string& name) {
+  waitFor(name, [&] { return std::filesystem::exists(folder_ / name); });
+}
+
 // The picture that was there is finished, too, until the window has seen what was done to it.
 void WindowTest::waitUntilDrawn() {
   std::this_thread::sleep_for(150ms);
@@ -180,6 +184,23 @@ std::string WindowTest::clipboard() {
   options.environment = {{"DISPLAY", display_}};
   std::this_thread::sleep_for(100ms);
   return runProcess({"/usr/bin/xclip", "-selection", "clipboard", "-o"}, options).out;
+}
+
+void WindowTest::saveAndCompare(const std::string& name) {
+  std::filesystem::remove(folder_ / name);
+  key("ctrl+s");
+  ASSERT_NO_FATAL_FAILURE(waitForFile(name));
+  const std::string saved = readFile(folder_ / name);
+  std::filesystem::remove(folder_ / name);
+  std::string command;
+  waitFor("a command that writes " + name, [&] {
+    key("ctrl+c");
+    command = clipboard();
+    return command.find(" -o " + name + " ") != std::string::npos;
+  });
+  const ProcessResult again = runCommand(command, folder_.path());
+  ASSERT_EQ(again.exitCode, 0) << command << again.err;
+  EXPECT_TRUE(readFile(folder_ / name) == saved) << command;
 }
 
 ProcessResult WindowTest::runCommand(const std::string& line, const std::filesystem::path& folder) {

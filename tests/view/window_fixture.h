@@ -44,6 +44,7 @@ class WindowTest : public testing::Test {
   /// Until the window's title says that its picture is finished.
   void waitUntilDrawn();
   void waitForTitle(const std::string& title);
+  void waitForFile(const std::string& name);
   std::string title();
   /// Ctrl Q, and the exit code; statistics of --stats are in stats.json.
   int quit();
@@ -56,7 +57,10 @@ class WindowTest : public testing::Test {
   std::string clipboard();
   std::string xdotool(std::vector<std::string> arguments);
   void waitFor(const std::string& what, const std::function<bool()>& happens);
-  /// Runs the copied command in another folder; the folder.
+  /// Saves the picture, which gets this name, copies the command, runs it, and compares the two files; what
+  /// is left is the one that was saved.
+  void saveAndCompare(const std::string& name);
+  /// Runs a command as it was copied in a folder.
   ProcessResult runCommand(const std::string& line, const std::filesystem::path& folder);
 
   TemporaryFolder folder_;
