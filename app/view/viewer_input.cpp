@@ -30,6 +30,12 @@ constexpr double kLightRadPerPixel = 0.006;
 constexpr double kKeyTurnDeg = 10;
 constexpr double kGrip = 6;  // of the divider, on each side [window's units]
 
+// Down now, or until now: what the mouse did before it was let go belongs to its drag.
+bool held(int button) {
+  const ImGuiIO& io = ImGui::GetIO();
+  return io.MouseDown[button] || io.MouseReleased[button];
+}
+
 glm::dvec2 of(const ImVec2& v) {
   return {static_cast<double>(v.x), static_cast<double>(v.y)};
 }
@@ -125,10 +131,11 @@ void Viewer::handleMouse() {
     pressed_ = false;
   }
   if (free && (onDivider_ || (!anyDown && dividerAt(now)))) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
-  if (dragging_ && anyDown && onDivider_) {
+  const bool anyHeld = held(0) || held(1) || held(2);
+  if (dragging_ && anyHeld && onDivider_) {
     document()->set("divider", fmt::format("{:.4f}", std::clamp(now.x / size_.width, 0.0, 1.0)), true);
     moving_ = true;
-  } else if (dragging_ && anyDown && now != before) {
+  } else if (dragging_ && anyHeld && now != before) {
     if (const auto from = camera()) handleDrag(*from, before, now);
   }
   if (pressed_ && !anyDown) {
@@ -149,9 +156,9 @@ void Viewer::handleDrag(const Camera& from, glm::dvec2 before, glm::dvec2 now) {
   const Part part = partAt(pressedAt_);
   before -= part.corner;
   now -= part.corner;
-  if (io.MouseDown[0] && io.KeyCtrl) {
+  if (held(0) && io.KeyCtrl) {
     dragLight(now - before);
-  } else if (io.MouseDown[0] && !io.KeyShift) {
+  } else if (held(0) && !io.KeyShift) {
     moveCamera(turned(from, part.size, before, now));
   } else {
     moveCamera(panned(from, part.size, before, now));
