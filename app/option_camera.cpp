@@ -1,6 +1,10 @@
 #include "app/option_camera.h"
 
+#include <fmt/format.h>
+
 #include <glm/trigonometric.hpp>
+
+#include "core/error.h"
 
 namespace meniscus {
 
@@ -16,6 +20,10 @@ Camera withViewpoint(Camera camera, const RenderOptions& options) {
   if (options.target) camera.target = *options.target;
   if (options.distance) camera.distance = *options.distance;
   if (options.nearest) camera.nearest = options.nearest;
+  if (options.farthest) camera.farthest = options.farthest;
+  if (camera.nearest && camera.farthest && !(*camera.nearest < *camera.farthest))
+    throw UsageError(fmt::format("--far: {} Angstrom is not behind the near plane, at {}, so nothing is seen",
+                                 *camera.farthest, *camera.nearest));
   return camera;
 }
 

@@ -9,7 +9,8 @@ namespace meniscus {
 /// Projection, opening and zoom.
 Camera lensOf(const RenderOptions& options);
 
-/// The camera with the target, distance and near plane that the options give, which have their way.
+/// The camera with the target, distance, near and far plane that the options give, which have their way.
+/// Throws UsageError if nothing lies between the planes.
 Camera withViewpoint(Camera camera, const RenderOptions& options);
 
 }  // namespace meniscus

@@ -20,9 +20,9 @@ constexpr std::byte kLineGrey{0x80};   // seen on any background
 constexpr double kLabelMargin = 0.01;  // of the panel's height
 
 // What is the whole picture's and no panel's.
-constexpr std::array<std::string_view, 12> kShared{"size",     "panel",  "divider",  "depth",
-                                                   "channels", "dpi",    "orient",   "rotate",
-                                                   "focus",    "target", "distance", "near"};
+constexpr std::array<std::string_view, 13> kShared{"size",     "panel",  "divider", "depth", "channels",
+                                                   "dpi",      "orient", "rotate",  "focus", "target",
+                                                   "distance", "near",   "far"};
 
 // The style's options in place of its name: those of the whole picture are no match for a panel's.
 std::vector<std::string> withStyleAlone(const std::vector<std::string>& arguments) {
@@ -112,6 +112,7 @@ Camera seenBy(const Camera& viewpoint, Camera lens) {
   lens.target = viewpoint.target;
   lens.distance = viewpoint.distance;
   lens.nearest = viewpoint.nearest;
+  lens.farthest = viewpoint.farthest;
   return lens;
 }
 

@@ -41,7 +41,7 @@ struct PanelPlace {
 /// `divider` (0..1) two pictures of the whole size, the first left of it and the second right of it.
 std::vector<PanelPlace> placePanels(std::size_t count, ImageSize whole, std::optional<double> divider);
 
-/// The viewpoint of one camera (orientation, target, distance, nearest) and the lens of another.
+/// The viewpoint of one camera (orientation, target, distance, nearest, farthest) and the lens of another.
 Camera seenBy(const Camera& viewpoint, Camera lens);
 
 /// A picture under construction: RGBA, 8 bits, rows from the top.

@@ -411,6 +411,8 @@ void addCameraOptions(CLI::App& app, RenderOptions& o) {
               [&o](auto& n, auto& v) { o.distance = parseNumber(n, v, 1e-3, 1e9, "Angstrom"); });
   group.value("--near", "D", "Cut off what is nearer to the eye than that, Angstrom [nothing]",
               [&o](auto& n, auto& v) { o.nearest = parseNumber(n, v, 0, 1e9, "Angstrom"); });
+  group.value("--far", "D", "Cut off what is farther from the eye than that, Angstrom [nothing]",
+              [&o](auto& n, auto& v) { o.farthest = parseNumber(n, v, 1e-3, 1e9, "Angstrom"); });
   group.flag("--orthographic", "Parallel instead of perspective projection", o.orthographic);
 }
 
@@ -502,7 +504,7 @@ void addOtherOptions(CLI::App& app, RenderOptions& o) {
 
 // With a scene, what is drawn is the scene's business; from where, unless the command says it.
 void requireOnlyPictureOptions(const RenderOptions& o) {
-  constexpr std::array<std::string_view, 4> kCamera{"orient", "target", "distance", "near"};
+  constexpr std::array<std::string_view, 5> kCamera{"orient", "target", "distance", "near", "far"};
   if (!o.exportMesh.empty())
     throw UsageError("--export: is for structure files; of a --scene there are only pictures");
   for (const auto& [name, value] : o.given)

@@ -53,7 +53,8 @@ struct RenderOptions {
   double zoom = 1;
   std::string focus;                 ///< CID; empty = everything
   std::optional<glm::dvec3> target;  ///< world point in the middle of the picture [Å]; nothing = fitted
-  std::optional<double> distance, nearest;  ///< as in Camera [Å]; nothing = fitted, and as near as the eye
+  std::optional<double> distance;    ///< as in Camera [Å]; nothing = fitted
+  std::optional<double> nearest, farthest;  ///< as in Camera [Å]; nothing = all is seen
 
   std::vector<PanelOptions> panels;  ///< none = one picture
   std::optional<double> divider;     ///< of two panels, share of the width; nothing = they are apart

@@ -45,6 +45,14 @@ View makeView(const Camera& camera, ImageSize size, const BoundingSphere& bounds
     view.nearZ = camera.distance - *camera.nearest;
     view.farZ = std::min(view.farZ, view.nearZ - 1e-3 * half);  // where everything lies before the plane
   }
+  const double cut = camera.distance - camera.farthest.value_or(0);
+  if (camera.farthest && cut > view.farZ) {
+    view.farZ = cut;
+    view.cutsFar = true;
+    // Where everything lies behind the plane, or nearer than the other.
+    const double room = camera.projection == Projection::perspective ? 0.5 * *camera.farthest : half;
+    view.nearZ = std::max(view.nearZ, view.farZ + std::min(1e-3 * half, room));
+  }
   return view;
 }
 

@@ -28,6 +28,7 @@ struct View {
   ImageSize size;               ///< of the whole picture
   double nearZ = 1000;          ///< view-space z of the near plane [Å]: nothing above it is seen
   double farZ = -1000;          ///< view-space z of the far plane [Å]: everything drawn lies above it
+  bool cutsFar = false;         ///< the scene goes on behind the far plane, but nothing of it is seen
   bool operator==(const View&) const = default;
 };
 
@@ -53,6 +54,7 @@ struct Camera {
   glm::dvec3 target{0.0};              ///< world point in the middle of the picture [Å]
   double distance = 100;               ///< eye to target [Å] (orthographic: fixes the scale through fovY)
   std::optional<double> nearest;       ///< nothing closer to the eye's plane than this is seen [Å]
+  std::optional<double> farthest;      ///< nothing farther from the eye's plane than this is seen [Å]
   double zoom = 1;                     ///< magnifies the picture about its middle; the viewpoint stays
 };
 

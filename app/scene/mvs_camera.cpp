@@ -59,7 +59,7 @@ void MvsCamera::readCamera(const MvsNode& node, std::vector<std::string>& unsupp
   reference_ = reference;
   const std::optional<JsonPlace> exact = node.meniscus();
   if (!exact) return;
-  static constexpr std::array<std::string_view, 4> kKeys{"orientation", "target", "distance", "near"};
+  static constexpr std::array<std::string_view, 5> kKeys{"orientation", "target", "distance", "near", "far"};
   settingsOf(*exact, SettingPlace::picture, kKeys);
   Camera camera;
   const std::vector<double> q = exact->at("orientation").numbers(4);
@@ -72,6 +72,11 @@ void MvsCamera::readCamera(const MvsNode& node, std::vector<std::string>& unsupp
   if (const auto nearest = exact->find("near")) {
     camera.nearest = nearest->number();
     if (!(*camera.nearest >= 0)) nearest->fail("must not be negative");
+  }
+  if (const auto farthest = exact->find("far")) {
+    camera.farthest = farthest->number();
+    if (!(*camera.farthest > camera.nearest.value_or(0)))
+      farthest->fail("must be more than near, and positive");
   }
   exact_ = camera;
 }
@@ -117,6 +122,7 @@ Camera MvsCamera::ownCamera(const RenderOptions& options, const std::vector<FitS
     camera.target = exact_->target;
     camera.distance = exact_->distance;
     camera.nearest = exact_->nearest;
+    camera.farthest = exact_->farthest;
     return camera;
   }
   if (reference_) {

@@ -21,9 +21,8 @@ class MvsCamera {
                  std::vector<std::string>& unsupported);
 
   /// The camera for a picture of these options; where nothing is asked for, it looks along -z at `all`. A
-  /// camera node wins over focus nodes, of which several share one picture; --orient, --target, --distance
-  /// and
-  /// --near of the options have their way over both.
+  /// camera node wins over focus nodes, of which several share one picture; --orient, --target,
+  /// --distance, --near and --far of the options have their way over both.
   Camera camera(const RenderOptions& options, const std::vector<FitSphere>& all) const;
 
  private:

@@ -46,6 +46,7 @@ Json cameraNode(const Picture& picture) {
              {"target", listOf(camera.target)},
              {"distance", camera.distance}};
   if (camera.nearest) exact["near"] = *camera.nearest;
+  if (camera.farthest) exact["far"] = *camera.farthest;
   return node("camera", std::move(params), std::move(exact));
 }
 

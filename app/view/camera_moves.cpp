@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <utility>
 
 namespace meniscus {
 namespace {
@@ -24,6 +25,18 @@ glm::dvec3 onBall(ImageSize size, glm::dvec2 pixel) {
 
 glm::dvec3 inWorld(const Camera& camera, const glm::dvec3& viewAxes) {
   return glm::conjugate(glm::normalize(camera.orientation)) * viewAxes;
+}
+
+// Of what is in front of the eye: the nearest and the farthest [Å].
+std::pair<double, double> depthsOf(const Camera& camera, const BoundingSphere& scene) {
+  const glm::dvec3 middle = glm::normalize(camera.orientation) * (scene.center - camera.target);
+  const double depth = camera.distance - middle.z;
+  return {std::max(0.0, depth - scene.radius), depth + scene.radius};
+}
+
+// What the two planes leave between them at least [Å].
+double leastSlab(const BoundingSphere& scene) {
+  return 1e-3 * scene.radius;
 }
 
 }  // namespace
@@ -54,6 +67,8 @@ Camera dollied(Camera camera, ImageSize size, glm::dvec2 cursor, double factor) 
       (cursor - 0.5 * glm::dvec2(size.width, size.height)) * pixelAtTarget(camera, size);
   camera.target += inWorld(camera, glm::dvec3(offset * (1 - factor), 0));
   if (camera.nearest) camera.nearest = std::max(0.0, *camera.nearest + distance - camera.distance);
+  if (camera.farthest)
+    camera.farthest = std::max(kLeastDistance, *camera.farthest + distance - camera.distance);
   camera.distance = distance;
   return camera;
 }
@@ -64,19 +79,26 @@ Camera focusedOn(Camera camera, ImageSize size, const BoundingSphere& sphere) {
   const double radius = std::max(sphere.radius, kLeastDistance) * tall;
   const double distance =
       radius / (camera.projection == Projection::perspective ? std::sin(half) : std::tan(half));
-  if (camera.nearest) camera.nearest.reset();
+  camera.nearest.reset();
+  camera.farthest.reset();
   camera.target = sphere.center;
   camera.distance = std::clamp(distance, kLeastDistance, kMostDistance);
   return camera;
 }
 
 Camera clippedBy(Camera camera, const BoundingSphere& scene, double share) {
-  const glm::dvec3 middle = glm::normalize(camera.orientation) * (scene.center - camera.target);
-  const double front = std::max(0.0, camera.distance - middle.z - scene.radius);
-  const double back = camera.distance - middle.z + scene.radius;
+  const auto [front, back] = depthsOf(camera, scene);
   const double plane = camera.nearest.value_or(front) + share * 2 * scene.radius;
-  camera.nearest = std::min(plane, back);
+  camera.nearest = std::min(plane, camera.farthest ? *camera.farthest - leastSlab(scene) : back);
   if (*camera.nearest <= front) camera.nearest.reset();
+  return camera;
+}
+
+Camera clippedBehindBy(Camera camera, const BoundingSphere& scene, double share) {
+  const auto [front, back] = depthsOf(camera, scene);
+  const double plane = camera.farthest.value_or(back) - share * 2 * scene.radius;
+  camera.farthest = std::max({plane, camera.nearest.value_or(front) + leastSlab(scene), kLeastDistance});
+  if (*camera.farthest >= back) camera.farthest.reset();
   return camera;
 }
 

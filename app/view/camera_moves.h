@@ -21,15 +21,19 @@ Camera turned(Camera camera, ImageSize size, glm::dvec2 from, glm::dvec2 to);
 /// Moved so that what lies in the target's plane follows the cursor.
 Camera panned(Camera camera, ImageSize size, glm::dvec2 from, glm::dvec2 to);
 
-/// Nearer (factor < 1) or farther; what lies in the target's plane under the cursor stays there. The near
-/// plane stays where it is in the scene.
+/// Nearer (factor < 1) or farther; what lies in the target's plane under the cursor stays there. The near and
+/// the far plane stay where they are in the scene.
 Camera dollied(Camera camera, ImageSize size, glm::dvec2 cursor, double factor);
 
 /// Looks at a sphere, from the same side, so that it fills the smaller side of the picture.
 Camera focusedOn(Camera camera, ImageSize size, const BoundingSphere& sphere);
 
-/// Moves the near plane into the scene by a share of its diameter; before its first atom there is no plane.
+/// Moves the near plane into the scene by a share of its diameter, to the far plane at most; before its first
+/// atom there is no plane.
 Camera clippedBy(Camera camera, const BoundingSphere& scene, double share);
+
+/// The same with the far plane, from behind.
+Camera clippedBehindBy(Camera camera, const BoundingSphere& scene, double share);
 
 /// Where a point of the world is seen; nothing if it is not before the eye.
 std::optional<glm::dvec2> pixelOf(const Camera& camera, ImageSize size, const glm::dvec3& world);

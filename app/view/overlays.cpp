@@ -28,11 +28,12 @@ void textOnShade(ImDrawList& list, ImVec2 at, ImU32 color, const std::string& te
   list.AddText(nullptr, 0, at, color, text.c_str(), nullptr, wrap);
 }
 
-constexpr std::array<std::pair<const char*, const char*>, 28> kKeys{{
+constexpr std::array<std::pair<const char*, const char*>, 29> kKeys{{
     {"drag", "turn"},
     {"Shift drag, right drag", "move"},
     {"wheel", "nearer, farther, to what is under the cursor"},
     {"Ctrl wheel", "cut away what is near"},
+    {"Ctrl Shift wheel", "cut away what is far"},
     {"Ctrl drag", "move the light"},
     {"click", "pick an atom; two, three, four of them measure"},
     {"double click", "look at what is there"},

@@ -271,14 +271,20 @@ void cameraPanel(Viewer& viewer, const RenderOptions& o) {
   optionFlag(document, "orthographic", "orthographic");
   optionSlider(document, "field of view", "fov", o.fovYDeg, 5, 120, "%.0f°");
   std::optional<Camera> camera = viewer.camera();
-  if (camera && camera->nearest) {
-    ImGui::Text("cut off before %.1f Å", *camera->nearest);
+  if (!camera) return;
+  const auto plane = [&](const char* text, std::optional<double>& at) {
+    if (!at) return;
+    ImGui::Text(text, *at);
     ImGui::SameLine();
+    ImGui::PushID(text);
     if (ImGui::SmallButton("nothing")) {
-      camera->nearest.reset();
+      at.reset();
       viewer.moveCamera(*camera);
     }
-  }
+    ImGui::PopID();
+  };
+  plane("cut off before %.1f Å", camera->nearest);
+  plane("cut off behind %.1f Å", camera->farthest);
 }
 
 void comparePanel(Viewer& viewer) {

@@ -17,8 +17,8 @@ constexpr std::size_t kMostPicks = 4;
 constexpr std::size_t kMostUndo = 1000;
 
 // What a camera of the viewer's stands for.
-constexpr std::array<std::string_view, 6> kCameraOptions{"orient", "rotate",   "focus",
-                                                         "target", "distance", "near"};
+constexpr std::array<std::string_view, 7> kCameraOptions{"orient",   "rotate", "focus", "target",
+                                                         "distance", "near",   "far"};
 
 bool isCameraOption(std::string_view name) {
   return std::find(kCameraOptions.begin(), kCameraOptions.end(), name) != kCameraOptions.end();
@@ -220,6 +220,7 @@ std::vector<std::string> renderArguments(const Document& document, const std::op
     given.emplace_back("target", fmt::format("{},{},{}", t.x, t.y, t.z));
     given.emplace_back("distance", fmt::format("{}", camera->distance));
     if (camera->nearest) given.emplace_back("near", fmt::format("{}", *camera->nearest));
+    if (camera->farthest) given.emplace_back("far", fmt::format("{}", *camera->farthest));
   }
   addOptions(given, arguments);
   return arguments;

@@ -146,7 +146,7 @@ void Viewer::submit() {
   const auto sameCamera = [](const std::optional<Camera>& a, const std::optional<Camera>& b) {
     if (!a || !b) return a.has_value() == b.has_value();
     return a->orientation == b->orientation && a->target == b->target && a->distance == b->distance &&
-           a->nearest == b->nearest;
+           a->nearest == b->nearest && a->farthest == b->farthest;
   };
   if (same && request.arguments == asked_.arguments && sameCamera(document.camera, asked_.camera)) {
     const bool still = Clock::now() - lastChange_ >= stillAfter();

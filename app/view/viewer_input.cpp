@@ -183,8 +183,11 @@ void Viewer::dragLight(glm::dvec2 by) {
 void Viewer::handleWheel(double steps) {
   const std::optional<Camera> from = camera();
   if (!from || !frame_) return;
-  if (ImGui::GetIO().KeyCtrl) {
-    moveCamera(clippedBy(*from, frame_->bounds, kClipStep * steps));
+  const ImGuiIO& io = ImGui::GetIO();
+  if (io.KeyCtrl) {
+    const double share = kClipStep * steps;
+    moveCamera(io.KeyShift ? clippedBehindBy(*from, frame_->bounds, share)
+                           : clippedBy(*from, frame_->bounds, share));
   } else {
     const Part part = partAt(cursor());
     moveCamera(dollied(*from, part.size, cursor() - part.corner, std::pow(kDolly, steps)));

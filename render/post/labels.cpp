@@ -43,6 +43,7 @@ bool place(const LabelSprite& sprite, const View& view, LabelPlace& out) {
   // The sphere's nearest point, but not before the near plane.
   p += perspective ? (eye - p) * std::min(sprite.label.radius / far, 0.999)
                    : glm::dvec3(0, 0, sprite.label.radius);
+  if (view.cutsFar && p.z <= view.farZ) return false;
   const double span = view.nearZ - view.farZ;
   p.z = std::min(p.z, view.nearZ - 1e-6 * span);
   const double depth = perspective ? view.distance - p.z : 1.0;

@@ -1,5 +1,6 @@
 // Every option of `meniscus render` does what its help says.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -197,6 +198,62 @@ TEST_F(RenderOption, targetDistanceAndNearMakeACamera) {
   cut.insert(cut.end(), {"--near", "200"});
   EXPECT_LT(render(kProtein, farther).covered(), 0.5 * picture.covered());
   EXPECT_EQ(render(kProtein, cut).covered(), 0);
+}
+
+// Of the pixels' own rays: what they meet and how far along the axis of sight.
+TEST_F(RenderOption, farCutsOffWhatIsFartherAndNothingElse) {
+  constexpr float kPlane = 80;
+  const std::vector<std::vector<std::string>> ways{
+      {"--quadrics", "tiles"},
+      {"--representation", "ball_and_stick", "--quadrics", "splat", "--orthographic"},
+      {"--representation", "cartoon"},
+      {"--representation", "surface", "--surface-method", "lists"},
+      {"--representation", "surface", "--surface-method", "tiles"},
+      {"--representation", "surface", "--surface-method", "newton"},
+      {"--representation", "surface", "--surface-method", "bezier"},
+      {"--representation", "surface", "--surface-method", "bvh", "--orthographic"},
+      {"--representation", "surface", "--surface-method", "mesh"}};
+  for (std::vector<std::string> way : ways) {
+    way.insert(way.end(),
+               {"--orient", "1,0,0,0", "--target", "30,30,15", "--distance", "80", "--channels", "depth,id"});
+    // Depth is that of the eye's plane, and without perspective that of the near plane.
+    const bool flat = std::find(way.begin(), way.end(), "--orthographic") != way.end();
+    if (flat) way.insert(way.end(), {"--near", "70"});
+    const float plane = flat ? kPlane - 70 : kPlane;
+    const Picture whole = render(kProtein, way, "whole.exr");
+    way.insert(way.end(), {"--far", std::to_string(kPlane)});
+    const Picture cut = render(kProtein, way, "cut.exr");
+    ASSERT_EQ(whole.channels, 2);
+    int gone = 0, left = 0;
+    for (std::size_t i = 0; i < whole.pixels.size(); i += 2) {
+      const float depth = whole.pixels[i], id = whole.pixels[i + 1];
+      if (id == 0 || std::abs(depth - plane) < 1e-3f) continue;
+      ++(depth < plane ? left : gone);
+      EXPECT_EQ(cut.pixels[i + 1], depth < plane ? id : 0) << way[1] << " " << way[3] << " " << depth;
+      if (depth < plane) {
+        EXPECT_NEAR(cut.pixels[i], depth, 1e-3f);
+      }
+    }
+    EXPECT_GT(gone, 20) << way[3];
+    EXPECT_GT(left, 20) << way[3];
+  }
+}
+
+TEST_F(RenderOption, farLeavesNothingOfLayersLabelsAndWhatLiesBehindIt) {
+  const std::vector<std::string> skin{"--representation", "surface",           "--opacity", "0.4",
+                                      "--label",          "//A/1=far and near"};
+  const auto with = [&](const std::string& far) {
+    std::vector<std::string> words = skin;
+    words.insert(words.end(),
+                 {"--orient", "1,0,0,0", "--target", "30,30,15", "--distance", "80", "--far", far});
+    return render(kProtein, words);
+  };
+  const Picture all = with("1000"), half = with("80");
+  EXPECT_EQ(with("1").covered(), 0);
+  EXPECT_GT(half.covered(), 0.05);
+  EXPECT_NE(half.pixels, all.pixels);
+  expectError(run({"render", molecule(kProtein), "-o", "x.png", "--near", "5", "--far", "5"}),
+              ExitCode::badUsage, {"--far", "nothing is seen"});
 }
 
 TEST_F(RenderOption, lightDirectionTurnsTheLight) {

@@ -170,6 +170,7 @@ TEST(RenderArguments, AreReadBackToTheLastDigit) {
         glm::dvec3(random.logUniform(1e-6, 1e6), random.uniform(-9, 9), random.uniform(-1e4, 1e4));
     camera.distance = random.logUniform(0.1, 1e5);
     camera.nearest = random.logUniform(0.01, 1e3);
+    camera.farthest = random.logUniform(1e3, 1e5);
     const auto options =
         parseRenderOptions(renderArguments(document, camera, {640, 480}, "out.png", 3)).value();
     EXPECT_EQ(options.files, std::vector<std::string>{"./-odd name.pdb"});
@@ -178,6 +179,7 @@ TEST(RenderArguments, AreReadBackToTheLastDigit) {
     EXPECT_EQ(options.target, camera.target);
     EXPECT_EQ(options.distance, camera.distance);
     EXPECT_EQ(options.nearest, camera.nearest);
+    EXPECT_EQ(options.farthest, camera.farthest);
     EXPECT_EQ(options.structure.model, 3);
     EXPECT_TRUE(options.orthographic);
     EXPECT_EQ(options.rotationDeg, glm::dvec3(0.0));  // the camera has it
@@ -285,6 +287,24 @@ TEST(CameraMoves, ClippingStaysInTheSceneAndEndsBeforeIt) {
   EXPECT_DOUBLE_EQ(clippedBy(camera, scene, 7).nearest.value(), 120);
 }
 
+TEST(CameraMoves, ClippingFromBehindLeavesASlab) {
+  Camera camera;
+  camera.distance = 100;
+  const BoundingSphere scene{{0, 0, 0}, 20};
+  const Camera clipped = clippedBehindBy(camera, scene, 0.25);
+  EXPECT_DOUBLE_EQ(clipped.farthest.value(), 110);
+  EXPECT_DOUBLE_EQ(dollied(clipped, kSize, {320, 240}, 0.5).farthest.value(), 60);
+  EXPECT_FALSE(clippedBehindBy(clipped, scene, -0.25).farthest);
+  EXPECT_FALSE(focusedOn(clipped, kSize, {{}, 5}).farthest);
+  const Camera slab = clippedBehindBy(clippedBy(camera, scene, 0.5), scene, 7);
+  EXPECT_DOUBLE_EQ(slab.nearest.value(), 100);
+  EXPECT_GT(*slab.farthest, *slab.nearest);
+  EXPECT_LT(*slab.farthest, 101);
+  const Camera thin = clippedBy(clipped, scene, 7);
+  EXPECT_LT(*thin.nearest, *thin.farthest);
+  EXPECT_GT(clippedBehindBy(camera, {{0, 0, 99}, 20}, 7).farthest.value(), 0);  // the eye is inside
+}
+
 RenderOptions withEffects() {
   return parseSettings({"--style", "full"});
 }
@@ -307,7 +327,8 @@ TEST(MovingQuality, CutsTheDearestFirstAndKeepsTheLight) {
 }
 
 TEST(MovingQuality, LeavesOutRaysBeforeTheMapsThatTakeTheirPlace) {
-  const RenderOptions options = parseSettings({"--trace-shadows", "64", "--trace-ao", "256", "--reflect", "3"});
+  const RenderOptions options =
+      parseSettings({"--trace-shadows", "64", "--trace-ao", "256", "--reflect", "3"});
   const std::vector<std::string> cuts = possibleCuts(options);
   EXPECT_EQ(cuts, (std::vector<std::string>{"mirrors and glass", "all traced rays of a pixel but one",
                                             "traced rays", "ambient occlusion", "soft edges of shadows",

@@ -149,6 +149,34 @@ TEST(MakeView, EverythingBehindTheEyeIsStillAValidView) {
   EXPECT_TRUE(std::isfinite(view.farZ));
 }
 
+TEST(MakeView, AFarPlaneOfTheUsersCutsTheScene) {
+  for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
+    Camera camera;
+    camera.projection = projection;
+    camera.distance = 100;
+    const BoundingSphere bounds{{0, 0, 0}, 20};
+    const View whole = makeView(camera, kSize, bounds);
+    EXPECT_FALSE(whole.cutsFar);
+    camera.farthest = 121;  // behind everything
+    EXPECT_EQ(makeView(camera, kSize, bounds), whole);
+    camera.farthest = 95;
+    View cut = whole;
+    cut.farZ = 5;
+    cut.cutsFar = true;
+    EXPECT_EQ(makeView(camera, kSize, bounds), cut);
+    for (const double before : {79.0, 1.0, 1e-3}) {  // all that is drawn lies behind it
+      camera.farthest = before;
+      const View nothing = makeView(camera, kSize, bounds);
+      EXPECT_DOUBLE_EQ(nothing.farZ, 100 - before);
+      EXPECT_GT(nothing.nearZ, nothing.farZ);
+      EXPECT_GT(static_cast<float>(nothing.nearZ), static_cast<float>(nothing.farZ));
+      if (projection == Projection::perspective) {
+        EXPECT_LT(nothing.nearZ, nothing.distance);
+      }
+    }
+  }
+}
+
 TEST(MakeView, AnEmptySceneIsAValidView) {
   for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
     Camera camera;

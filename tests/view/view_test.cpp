@@ -315,7 +315,15 @@ TEST_F(WindowTest, SceneIsDrawnFromWhereItIsSeen) {
   drag(kPanel + 100, 100, 50, 20);
   ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
   ASSERT_NO_FATAL_FAILURE(saveAndCompare("scene.png"));
-  EXPECT_FALSE(readFile(folder_ / "first.png") == readFile(folder_ / "scene.png"));
+  const std::string turned = readFile(folder_ / "scene.png");
+  EXPECT_FALSE(readFile(folder_ / "first.png") == turned);
+  wheel(kPanel + 100, 100, 20, {"ctrl"});
+  wheel(kPanel + 100, 100, 20, {"ctrl", "shift"});
+  ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
+  ASSERT_NO_FATAL_FAILURE(saveAndCompare("scene.png"));
+  EXPECT_NE(clipboard().find(" --near="), std::string::npos) << clipboard();
+  EXPECT_NE(clipboard().find(" --far="), std::string::npos) << clipboard();
+  EXPECT_FALSE(readFile(folder_ / "scene.png") == turned);
   EXPECT_EQ(quit(), 0);
   const nlohmann::json said = messages(folder_ / "stats.json");
   EXPECT_TRUE(anyContains(said, "(--strict)")) << said;

@@ -175,6 +175,15 @@ void WindowTest::drag(int x, int y, int byX, int byY, int button) {
   xdotool({"mouseup", std::to_string(button)});
 }
 
+void WindowTest::wheel(int x, int y, int steps, const std::vector<std::string>& keys) {
+  moveTo(x, y);
+  for (const std::string& key : keys) xdotool({"keydown", key});
+  std::this_thread::sleep_for(50ms);
+  xdotool({"click", "--repeat", std::to_string(steps), "--delay", "20", "4"});
+  std::this_thread::sleep_for(200ms);
+  for (const std::string& key : keys) xdotool({"keyup", key});
+}
+
 void WindowTest::resize(int width, int height) {
   xdotool({"windowsize", window_, std::to_string(width), std::to_string(height)});
 }

@@ -53,6 +53,8 @@ class WindowTest : public testing::Test {
   void moveTo(int x, int y);  ///< in the window
   void click(int x, int y, int button = 1);
   void drag(int x, int y, int byX, int byY, int button = 1);
+  /// Turns the wheel away from the user, with these keys held.
+  void wheel(int x, int y, int steps, const std::vector<std::string>& keys);
   void resize(int width, int height);
   std::string clipboard();
   std::string xdotool(std::vector<std::string> arguments);
