@@ -52,7 +52,7 @@ set(gl_in render bench tests/gpu tests/support)
 set(egl_headers "^EGL/")
 set(egl_in render tests/gpu tests/support)
 set(window_headers "^(GLFW/|imgui|backends/imgui|X11/)")
-set(window_in app/view)
+set(window_in app/view tests/view)
 # These stay out of headers, so that what includes ours does not see them.
 set(source_only gl egl)
 

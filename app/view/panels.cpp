@@ -13,6 +13,7 @@
 #include "app/measurement.h"
 #include "app/picture_drawer.h"
 #include "app/style.h"
+#include "app/view/light_widgets.h"
 #include "app/view/option_widgets.h"
 #include "app/view/viewer.h"
 #include "render/surface_method.h"
@@ -187,12 +188,14 @@ void outlineChecks(Document& document, const RenderOptions& o) {
 
 void effectsPanel(Viewer& viewer, const RenderOptions& o) {
   Document& document = *viewer.document();
+  const RenderSettings drawn = renderSettingsOf(o);  // what is traced is on
   static constexpr const char* kShadows[] = {"off", "hard", "soft"};
-  optionCombo(document, "shadows", "shadows", kShadows, kShadows[static_cast<std::size_t>(o.shadows.mode)]);
-  if (o.shadows.mode == ShadowMode::soft)
+  optionCombo(document, "shadows", "shadows", kShadows,
+              kShadows[static_cast<std::size_t>(drawn.shadows.mode)]);
+  if (drawn.shadows.mode == ShadowMode::soft)
     optionSlider(document, "penumbra", "penumbra", o.shadows.penumbra, 0.1, 30, "%.1f Å", true);
-  optionCheck(document, "ambient occlusion", "occlusion", o.occlusion.on, "on", "off");
-  if (o.occlusion.on) {
+  optionCheck(document, "ambient occlusion", "occlusion", drawn.occlusion.on, "on", "off");
+  if (drawn.occlusion.on) {
     optionSlider(document, "reach", "occlusion-radius", o.occlusion.radius, 1, 200, "%.0f Å", true);
     optionSlider(document, "strength##ao", "occlusion-strength", o.occlusion.strength, 0, 1, "%.2f");
   }
@@ -214,18 +217,6 @@ void effectsPanel(Viewer& viewer, const RenderOptions& o) {
   Rgb color = o.background.color;
   if (colorEdit("##background", color)) document.set("background", fmt::format("#{:06X}", color), true);
   if (ImGui::IsItemDeactivatedAfterEdit()) document.endChange();
-}
-
-void lightPanel(Viewer& viewer, const RenderOptions& o) {
-  Document& document = *viewer.document();
-  const Lighting light = lightOf(o);
-  optionSlider(document, "key", "key-light", light.key.intensity, 0, 2, "%.2f");
-  optionSlider(document, "fill", "fill-light", light.fill.intensity, 0, 2, "%.2f");
-  optionSlider(document, "ambient", "ambient-light", light.ambient, 0, 2, "%.2f");
-  optionSlider(document, "highlight", "highlight", light.specular, 0, 2, "%.2f");
-  ImGui::TextDisabled("Ctrl drag turns the key light");
-  if (document.has("light-direction") && ImGui::Button("Light from the upper left"))
-    document.remove("light-direction");
 }
 
 void surfaceStats(const Viewer& viewer) {
@@ -413,7 +404,7 @@ void drawPanels(Viewer& viewer, double height) {
       if (structure && ImGui::CollapsingHeader("Selections")) selectionsPanel(viewer, *options);
       if (ImGui::CollapsingHeader("Molecule")) moleculePanel(viewer, *options);
       if (ImGui::CollapsingHeader("Effects")) effectsPanel(viewer, *options);
-      if (ImGui::CollapsingHeader("Light")) lightPanel(viewer, *options);
+      if (ImGui::CollapsingHeader("Light")) lightWidgets(*viewer.document(), *options);
       if (ImGui::CollapsingHeader("Surface")) surfacePanel(viewer, *options);
       if (ImGui::CollapsingHeader("Camera")) cameraPanel(viewer, *options);
       if (structure && ImGui::CollapsingHeader("Compare")) comparePanel(viewer);
