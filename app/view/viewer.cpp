@@ -47,7 +47,7 @@ std::string withoutPlaceholders(const std::string& text) {
 }  // namespace
 
 Viewer::Viewer(const RenderOptions& base)
-    : base_(base), window_("Meniscus", windowSizeFor(base)), worker_(base, &Window::wake) {
+    : base_(base), window_("Meniscus (starting)", windowSizeFor(base)), worker_(base, &Window::wake) {
   window_.onKey = [this](int key, bool control, bool shift) { handleKey(key, control, shift); };
   window_.onDrop = [this](const std::vector<std::string>& dropped) {
     for (const std::string& file : dropped) open(file);

@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "tests/support/paths.h"
+#include "tests/view/file_drop.h"
 #include "tests/view/window_fixture.h"
 
 namespace meniscus::test {
@@ -249,7 +250,8 @@ TEST_F(WindowTest, WhatIsToBeSavedHasNamesOfItsOwnAndIsWrittenBeforeTheEnd) {
   ASSERT_NO_FATAL_FAILURE(waitForTitle("s.mvsj - Meniscus"));
   for (int i = 0; i < 2; ++i) key("ctrl+s");
   EXPECT_EQ(quit(), 0);
-  for (const char* name : {"a{b}.png", "a{b}-2.png", "a{b}-3.png", "s-3.png", "s-9.png", "s-2-3.png", "s-2-9.png"})
+  for (const char* name :
+       {"a{b}.png", "a{b}-2.png", "a{b}-3.png", "s-3.png", "s-9.png", "s-2-3.png", "s-2-9.png"})
     EXPECT_FALSE(readFile(folder_ / name).empty()) << name;
   EXPECT_EQ(readFile(folder_ / "s-3.png"), readFile(folder_ / "s-2-3.png"));
   EXPECT_EQ(readFile(folder_ / "view.log"), "");
@@ -328,6 +330,25 @@ TEST_F(WindowTest, SceneIsDrawnFromWhereItIsSeen) {
   const nlohmann::json said = messages(folder_ / "stats.json");
   EXPECT_TRUE(anyContains(said, "(--strict)")) << said;
   EXPECT_TRUE(anyContains(said, "leave out --offline once")) << said;
+}
+
+TEST_F(WindowTest, FilesAreDropped) {
+  writeFile(folder_ / "broken.pdb", "this is no structure\n");
+  std::filesystem::copy(molecule("adrenaline.pdb"), folder_ / "a name of its own.pdb");
+  ASSERT_NO_FATAL_FAILURE(open({}));
+  ASSERT_NO_FATAL_FAILURE(waitForTitle("Meniscus"));
+  EXPECT_EQ(
+      dropFiles(display_, std::stoul(window_), {folder_ / "broken.pdb", folder_ / "a name of its own.pdb"}),
+      "");
+  ASSERT_NO_FATAL_FAILURE(waitForTitle("a name of its own.pdb - Meniscus"));
+  key("ctrl+c");
+  EXPECT_TRUE(clipboard().starts_with("meniscus render '" + (folder_ / "a name of its own.pdb").string() +
+                                      "' -o 'a name of its own.png'"))
+      << clipboard();
+  key("Prior");  // to the other, which is closed
+  ASSERT_NO_FATAL_FAILURE(waitForTitle("a name of its own.pdb - Meniscus"));
+  EXPECT_EQ(quit(), 0);
+  EXPECT_TRUE(anyContains(messages(folder_ / "stats.json"), "broken.pdb: is no structure"));
 }
 
 TEST(ViewWithoutDisplay, SaysSoAndNamesRender) {
