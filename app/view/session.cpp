@@ -232,6 +232,13 @@ std::string commandLine(const std::vector<std::string>& arguments) {
   return line;
 }
 
+Camera inPlaceOf(const Camera& own, Camera camera) {
+  constexpr double kNothingBehind = 1e9;  // what --far takes at most
+  if (own.nearest && !camera.nearest) camera.nearest = 0;
+  if (own.farthest && !camera.farthest) camera.farthest = kNothingBehind;
+  return camera;
+}
+
 std::vector<std::string> preparationArguments(const Document& document, ImageSize size) {
   std::vector<std::string> arguments;
   addFile(document, arguments);

@@ -112,6 +112,10 @@ std::vector<std::string> renderArguments(const Document& document, const std::op
 /// The same as one would type it.
 std::string commandLine(const std::vector<std::string>& arguments);
 
+/// A camera in place of a scene's own: the planes that only the scene's has are where they cut nothing,
+/// because no option takes them away.
+Camera inPlaceOf(const Camera& own, Camera camera);
+
 /// What the options become in the viewer: as renderArguments(), but of all models or states if they are shown
 /// one by one, and without a camera.
 std::vector<std::string> preparationArguments(const Document& document, ImageSize size);

@@ -314,6 +314,7 @@ std::vector<std::string> Viewer::argumentsFor(const std::string& output) {
   std::optional<Camera> seen = shown.camera;
   // One camera suits all models; a model alone would get its own.
   if (shown.oneByOne && !shown.isScene()) seen = camera();
+  if (seen && shown.isScene() && shownPicture()) seen = inPlaceOf(shownPicture()->scene.camera, *seen);
   if (shownPicture() && shown.oneByOne && !shown.isScene()) model = shownPicture()->place.model;
   return renderArguments(shown, seen, size_, output, model);
 }

@@ -187,6 +187,24 @@ TEST(RenderArguments, AreReadBackToTheLastDigit) {
   }
 }
 
+TEST(RenderArguments, TakeAwayThePlanesOfAScenesOwnCamera) {
+  Camera own, seen;
+  own.nearest = 60;
+  seen.farthest = 90;
+  const BoundingSphere bounds{{0, 0, 0}, 50};
+  EXPECT_EQ(makeView(inPlaceOf(own, seen), {8, 8}, bounds), makeView(seen, {8, 8}, bounds));
+  const Document scene("a.mvsj", {});
+  const RenderOptions options =
+      parseRenderOptions(renderArguments(scene, inPlaceOf(own, seen), {8, 8}, "o.png")).value();
+  EXPECT_EQ(options.nearest, 0.0);
+  EXPECT_EQ(options.farthest, 90.0);
+  own.farthest = 95;
+  seen.farthest.reset();
+  EXPECT_EQ(makeView(inPlaceOf(own, seen), {8, 8}, bounds), makeView(seen, {8, 8}, bounds));
+  seen.nearest = 55;
+  EXPECT_EQ(inPlaceOf(own, seen).nearest, 55.0);
+}
+
 TEST(RenderArguments, AreQuotedForAShell) {
   Document document("my file.pdb", {{"show", "(HEM)=licorice"}});
   EXPECT_EQ(commandLine(renderArguments(document, {}, {8, 8}, "o.png")),
