@@ -289,12 +289,12 @@ TEST_F(RenderOption, panelsAreThoseOptionsSeenByOneCamera) {
 TEST_F(RenderOption, anErrorPanelComparesTheFirstTwo) {
   const auto colors = [&](const std::string& method) {
     const Picture picture =
-        render("c60.pdb", {"--size", "192x64", "--label-size", "0.1", "--background", "black",
+        render("c60.pdb", {"--size", "288x96", "--label-size", "0.1", "--background", "black",
                            "--representation", "surface", "--panel", "--surface-method tiles", "--panel",
                            "--surface-method " + method, "--panel", "error"});
-    std::map<std::array<int, 3>, int> counts;  // in a part without label and scale
-    for (int y = 16; y < 56; ++y) {
-      for (int x = 140; x < 180; ++x) {
+    std::map<std::array<int, 3>, int> counts;  // in a part without labels and scale
+    for (int y = 20; y < 80; ++y) {
+      for (int x = 220; x < 270; ++x) {
         const auto pixel = picture.at(x, y);
         ++counts[{static_cast<int>(std::lround(255 * pixel[0])),
                   static_cast<int>(std::lround(255 * pixel[1])),
