@@ -50,6 +50,7 @@ class ChordWindow {
   std::size_t capacity = 0;
   float *middle = nullptr, *half2 = nullptr, *enter = nullptr, *leave = nullptr;  // a vector for each chord
   float *inverse2 = nullptr, *coefficient = nullptr;                              // a number for each chord
+  std::uint32_t* record = nullptr;                                                // whose chord it is
 
  private:
   std::size_t lanes_;

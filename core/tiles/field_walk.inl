@@ -42,12 +42,14 @@ HWY_INLINE Point pointNear(const BallRecord& b, const TileRays& rays, const Pack
           all(static_cast<float>(b.centerZ - p.zStart)) * p.inverseZ};
 }
 
-// Where a ray is nearest to a ball's centre, and the square of half its chord (negative: none).
-HWY_INLINE void chordOf(const BallRecord& b, const TileRays& rays, const Packet& p, V& middle, V& half2) {
+// Where a ray is nearest to a ball's centre, and the square of half its chord in the ball of this squared
+// radius (negative: none).
+HWY_INLINE void chordOf(const BallRecord& b, const TileRays& rays, const Packet& p, float radius2, V& middle,
+                        V& half2) {
   const Point point = pointNear(b, rays, p);
   const V along = dot(point.position, p.direction);
   const Vec3 nearest = sub(point.position, scale(p.direction, along));
-  half2 = all(b.support2) - dot(nearest, nearest);
+  half2 = all(radius2) - dot(nearest, nearest);
   middle = point.t - along;
 }
 
@@ -124,7 +126,7 @@ class Walk {
       const BallRecord& b = tile_.records[tile_.list[taken_]];
       if (b.front + tile_.slack <= lowest) break;
       V middle, half2;
-      chordOf(b, rays_, packet_, middle, half2);
+      chordOf(b, rays_, packet_, b.support2, middle, half2);
       const M met = hn::And(half2 > hn::Zero(f), live_);
       if (hn::AllFalse(f, met)) continue;
       const V half = hn::Sqrt(hn::Max(half2, hn::Zero(f)));
@@ -142,6 +144,7 @@ class Walk {
       hn::Store(leave, f, window_.leave + at);
       window_.inverse2[count_] = b.inverseSupport2;
       window_.coefficient[count_] = b.coefficient;
+      window_.record[count_] = tile_.list[taken_];
       ++count_;
       next_ = hn::Min(next_, eventAfter(now_, enter, leave));
       changed = true;
@@ -180,8 +183,9 @@ class Walk {
     return sum * all(1.000002f);  // rounding must not make it less than the polynomial
   }
 
-  // Writes down the polynomials of [now, next] of the candidates, negated where the ray began inside.
-  void writePieces(M candidates) {
+  // Writes down the polynomials of [now, next] of the candidates, negated where the ray began inside. Returns
+  // those for which it is that of one ball.
+  M writePieces(M candidates) {
     const F f;
     const V zero = hn::Zero(f);
     counts_.pieces += hn::CountTrue(f, candidates);
@@ -191,11 +195,11 @@ class Walk {
       polynomial_.set(k, all(static_cast<float>(-static_cast<double>(level_) * binomial)));
       binomial = binomial * (n - k) / (k + 1);
     }
+    V balls = zero;
     for (std::size_t i = 0; i < count_; ++i) {
-      // A chord covers the interval or lies outside of it: its ends are among the events.
-      const M covers =
-          hn::And(hn::And(chord(window_.enter, i) <= now_, chord(window_.leave, i) >= next_), candidates);
+      const M covers = hn::And(coversInterval(i), candidates);
       if (hn::AllFalse(f, covers)) continue;
+      balls = balls + hn::IfThenElseZero(covers, all(1.0f));
       const V middle = chord(window_.middle, i), half2 = chord(window_.half2, i);
       const V inverse2 = hn::IfThenElseZero(covers, all(window_.inverse2[i]));
       const V a = now_ - middle, b = next_ - middle;
@@ -204,10 +208,41 @@ class Walk {
           {hn::Max((half2 - a * a) * inverse2, zero), w1 + w1, hn::Max((half2 - b * b) * inverse2, zero)},
           all(window_.coefficient[i]), polynomial_);
     }
-    if (hn::AllFalse(f, inside_)) return;
-    for (int k = 0; k <= n; ++k) {
+    for (int k = 0; k <= n && !hn::AllFalse(f, inside_); ++k) {
       const V c = polynomial_.get(k);
       polynomial_.set(k, hn::IfThenElse(inside_, hn::Neg(c), c));
+    }
+    return hn::And(candidates, balls == all(1.0f));
+  }
+
+  // A chord covers the interval or lies outside of it: its ends are among the events.
+  HWY_INLINE M coversInterval(std::size_t i) const {
+    return hn::And(chord(window_.enter, i) <= now_, chord(window_.leave, i) >= next_);
+  }
+
+  // Of a ball alone the surface is its core, a sphere, met exactly however close the level is to the most
+  // that the ball reaches: there the field is too flat for a polynomial in float32.
+  void meetCores(M lone, V& hit) {
+    const F f;
+    for (std::size_t i = 0; i < count_ && !hn::AllFalse(f, lone); ++i) {
+      const M here = hn::And(lone, coversInterval(i));
+      if (hn::AllFalse(f, here)) continue;
+      lone = hn::AndNot(here, lone);
+      const BallRecord& b = tile_.records[window_.record[i]];
+      V middle, half2;
+      chordOf(b, rays_, packet_, b.core2, middle, half2);
+      const M met = half2 > hn::Zero(f);
+      const V half = hn::Sqrt(hn::Max(half2, hn::Zero(f)));
+      const V enter = hn::IfThenElse(met, middle - half, all(kFar)),
+              leave = hn::IfThenElse(met, middle + half, all(-kFar));
+      // A sign that has changed by `now` is a crossing there: rounding opens no cracks.
+      const M within = hn::And(enter < now_, leave > now_);
+      const M comesIn = hn::AndNot(inside_, hn::And(enter < next_, leave > now_));
+      const M goesOut = hn::And(inside_, hn::Or(hn::Not(within), leave < next_));
+      const M crossed = hn::And(here, hn::Or(comesIn, goesOut));
+      const V at = hn::IfThenElse(inside_, hn::IfThenElse(within, leave, now_), hn::Max(enter, now_));
+      hit = hn::IfThenElse(crossed, at, hit);
+      live_ = hn::AndNot(crossed, live_);
     }
   }
 
@@ -216,7 +251,10 @@ class Walk {
   M lookInto(M candidates, V& hit) {
     const F f;
     const V zero = hn::Zero(f);
-    writePieces(candidates);
+    const M lone = writePieces(candidates);
+    if (!hn::AllFalse(f, lone)) meetCores(lone, hit);
+    candidates = hn::AndNot(lone, candidates);
+    if (hn::AllFalse(f, candidates)) return candidates;
     const int n = kernel_.degree();
     // Signs of the coefficients, zero counting as negative.
     M positive = polynomial_.get(0) > zero;
@@ -362,6 +400,7 @@ class Walk {
         hn::Store(leave, f, window_.leave + to);
         window_.inverse2[kept] = window_.inverse2[i];
         window_.coefficient[kept] = window_.coefficient[i];
+        window_.record[kept] = window_.record[i];
       }
       ++kept;
     }

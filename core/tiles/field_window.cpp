@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <new>
+#include <type_traits>
 
 #include "core/tiles/field_caster.h"
 
@@ -33,13 +35,14 @@ ChordWindow::~ChordWindow() {
 
 void ChordWindow::grow() {
   const std::size_t larger = capacity == 0 ? kFirstCapacity : 2 * capacity;
+  static_assert(sizeof(float) == sizeof(std::uint32_t));
   auto* const memory =
-      static_cast<float*>(::operator new(larger*(4 * lanes_ + 2) * sizeof(float), kAlignment));
-  float* next = memory;
-  const auto move = [&](float*& array, std::size_t perChord) {
-    if (capacity > 0) std::memcpy(next, array, capacity * perChord * sizeof(float));
-    array = next;
-    next += larger * perChord;
+      static_cast<std::byte*>(::operator new(larger*(4 * lanes_ + 3) * sizeof(float), kAlignment));
+  std::byte* next = memory;
+  const auto move = [&](auto*& array, std::size_t perChord) {
+    if (capacity > 0) std::memcpy(next, array, capacity * perChord * sizeof(*array));
+    array = reinterpret_cast<std::remove_reference_t<decltype(array)>>(next);
+    next += larger * perChord * sizeof(*array);
   };
   move(middle, lanes_);
   move(half2, lanes_);
@@ -47,6 +50,7 @@ void ChordWindow::grow() {
   move(leave, lanes_);
   move(inverse2, 1);
   move(coefficient, 1);
+  move(record, 1);
   ::operator delete(memory_, kAlignment);
   memory_ = memory;
   capacity = larger;

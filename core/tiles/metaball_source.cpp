@@ -29,13 +29,17 @@ Clusters clustersOf(const MetaballField& field) {
   return clusters;
 }
 
-Occluder MetaballSource::occluder(std::size_t index) const {
-  if (!coresHide_) return {};
-  const Metaball& ball = field_.balls[index];
+double MetaballSource::coreRadius(const Metaball& ball) const {
   const double share = ball.coefficient == lastCoefficient_
                            ? lastShare_
                            : coreShare(field_.kernel, field_.level, static_cast<double>(ball.coefficient));
-  return projection_.occluder(ball.center, share * static_cast<double>(ball.support));
+  return share * static_cast<double>(ball.support);
+}
+
+Occluder MetaballSource::occluder(std::size_t index) const {
+  if (!coresHide_) return {};
+  const Metaball& ball = field_.balls[index];
+  return projection_.occluder(ball.center, coreRadius(ball));
 }
 
 void MetaballSource::record(std::size_t index, BallRecord& out) const {
@@ -51,6 +55,8 @@ void MetaballSource::record(std::size_t index, BallRecord& out) const {
   out.eyeAbove = static_cast<float>(projection_.eyeZ() - p.view.z);
   out.support2 = static_cast<float>(support * support);
   out.inverseSupport2 = static_cast<float>(1 / (support * support));
+  const double core = coreRadius(ball);
+  out.core2 = static_cast<float>(core * core);
   out.coefficient = ball.coefficient;
   out.front = static_cast<float>(p.view.z + support);
   out.fromEye = projection_.nearEye(p, support) ? 1u : 0u;

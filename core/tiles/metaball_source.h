@@ -18,6 +18,7 @@ struct BallRecord {
   float centerX, centerY;           ///< view space
   float eyeAbove;                   ///< z of the eye above the centre
   float support2, inverseSupport2;  ///< R^2, 1 / R^2
+  float core2;                      ///< squared radius of the core in which it alone reaches the level
   float coefficient;                ///< q
   float front;                      ///< largest z of its support in view space
   std::uint32_t fromEye;            ///< take the rays from the eye
@@ -51,6 +52,8 @@ class MetaballSource : public TileSource {
   double largestSupport() const { return largestSupport_; }
 
  private:
+  double coreRadius(const Metaball& ball) const;
+
   const MetaballField& field_;
   TileProjection projection_;
   double largestSupport_ = 0;

@@ -175,6 +175,41 @@ TEST_P(FieldTilesTest, AreasGiveTheSameBits) {
   }
 }
 
+// Of a ball alone the surface is a sphere, where the field is too flat for float32, too; from outside and
+// from its middle.
+TEST_P(FieldTilesTest, LoneBallsAreTheirCores) {
+  for (const Kernel kernel : {Kernel{}, Kernel{KernelShape::quartic}, Kernel{KernelShape::power, 2},
+                              Kernel{KernelShape::power, 16}}) {
+    for (const double below : {0.1, 1e-3, 1e-6}) {
+      SCOPED_TRACE(below);
+      MetaballField field;
+      field.kernel = kernel;
+      field.level = 1.5 * (1 - below);
+      const double core = 2 * coreShare(kernel, field.level, 1.5);
+      const auto apart = static_cast<float>(1.5 * core);
+      // The third takes away and reaches into the first, but not to its core.
+      field.balls = {{{0, 0, 0}, 2, 1.5f, 0xFFFFFF, 1}, {{9, 0, 0}, 2, 1.5f, 0xFFFFFF, 2}};
+      if (below > 0.01) field.balls.push_back({{0, apart + 2, 0}, 2, -0.5f, 0xFFFFFF, 3});
+      const View outside = test::viewOfBall(GetParam(), {60, 50}, kOrigin, 1.3 * core);
+      expectTrue(field, outside, "outside");
+
+      Camera camera;
+      camera.projection = GetParam();
+      camera.target = kOrigin;
+      camera.distance = 0.01 * core;
+      camera.fovY = 1.5;
+      const View within = makeView(camera, {40, 30}, {kOrigin, 15});
+      const ReferenceImage truth = traceReference(field, kOrigin, within);
+      const HitErrors errors = compareHits(cast(field, targetOf(within)), truth);
+      EXPECT_EQ(errors.missed + errors.falseHits, 0u);
+      EXPECT_LE(errors.relativeRms, 1e-5);
+      if (GetParam() == Projection::perspective) {
+        EXPECT_EQ(errors.compared, 1200u) << "a wall all around";
+      }
+    }
+  }
+}
+
 // Thousands of balls in one place: the window holds 128 at first and grows.
 TEST_P(FieldTilesTest, AnyNumberOfBallsMayOverlap) {
   MetaballField field;
