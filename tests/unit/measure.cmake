@@ -1,4 +1,4 @@
-meniscus_test(NAME generated_scenes_test LABEL unit
+meniscus_test(NAME generated_scenes_test LABEL unit CALCULATES
   SOURCES generated_scenes_test.cpp
   LIBRARIES meniscus_core meniscus_test_scenes)
 meniscus_test(NAME measure_test LABEL unit
