@@ -256,6 +256,9 @@ void Bezier::drawRegion(Frame& frame, const ScreenRect& rect, int list, bool aga
   lists_.reserve(static_cast<std::uint64_t>(rect.pixels()) * 4 *
                  static_cast<std::uint64_t>(list + kHeaderSlots));
   lists_.bindStorage(1);
+  // The list, four textures, and whether it was too short.
+  statistics_.mostBytesPerPixel =
+      std::max(statistics_.mostBytesPerPixel, 4.0 * (list + kHeaderSlots + 4 + 1));
   control_.reserve(sizeof(PeelControl) + sizeof(CellState) * region.cells.size());
   control_.zero();
   const PeelControl fresh;

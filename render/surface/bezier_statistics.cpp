@@ -25,8 +25,9 @@ SurfaceStats BezierStatistics::take() {
                    {"layers", layers},
                    {"layers of tiles", cellLayers},
                    {"rectangles drawn in layers", instancesDrawn},
-                   {"repairs", repairs}};
-  ballsInView = ballsLeft = layers = cellLayers = instancesDrawn = repairs = 0;
+                   {"repairs", repairs},
+                   {"most bytes per pixel", mostBytesPerPixel}};
+  ballsInView = ballsLeft = layers = cellLayers = instancesDrawn = repairs = mostBytesPerPixel = 0;
   return stats;
 }
 

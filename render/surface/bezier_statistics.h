@@ -16,7 +16,8 @@ struct BezierStatistics {
   SurfaceStats take();
 
   RayCountCopies<BezierCounts> counts;
-  double ballsInView = 0, ballsLeft = 0, layers = 0, cellLayers = 0, instancesDrawn = 0, repairs = 0;
+  double ballsInView = 0, ballsLeft = 0, layers = 0, cellLayers = 0, instancesDrawn = 0, repairs = 0,
+         mostBytesPerPixel = 0;
 };
 
 }  // namespace meniscus

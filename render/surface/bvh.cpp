@@ -286,15 +286,17 @@ SurfaceStats Bvh::takeStats() {
   stats.grazing += answered_.effort.grazing;
   stats.notConverged += answered_.effort.notConverged;
   stats.overflow = answered_.rays;
-  stats.details = {{"hits", hits},
-                   {"nodes met", nodes + static_cast<double>(answered_.nodes)},
-                   {"cells searched", leaves + static_cast<double>(answered_.leaves)},
-                   {"balls in them", balls + static_cast<double>(answered_.balls)},
-                   {"cast by the processor", static_cast<double>(answered_.rays)},
-                   {"most nodes", static_cast<double>(tree_.nodes.size())},
-                   {"most balls in all cells", static_cast<double>(tree_.members.size())},
-                   {"most cells cut short", static_cast<double>(tree_.forcedLeaves)},
-                   {"most ms of construction", buildMs_}};
+  stats.details = {
+      {"hits", hits},
+      {"nodes met", nodes + static_cast<double>(answered_.nodes)},
+      {"cells searched", leaves + static_cast<double>(answered_.leaves)},
+      {"balls in them", balls + static_cast<double>(answered_.balls)},
+      {"cast by the processor", static_cast<double>(answered_.rays)},
+      {"most nodes", static_cast<double>(tree_.nodes.size())},
+      {"most balls in all cells", static_cast<double>(tree_.members.size())},
+      {"most cells cut short", static_cast<double>(tree_.forcedLeaves)},
+      {"most ms of construction", buildMs_},
+      {"most bytes per pixel", static_cast<double>(gl::bytesPerTexel(gl::TextureFormat::rgba32ui))}};
   answered_ = {};
   return stats;
 }

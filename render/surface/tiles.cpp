@@ -2,6 +2,8 @@
 
 #include <glad/gl.h>
 
+#include <algorithm>
+
 #include "core/tiles/field_tiles.h"
 #include "core/tiles/instruction_sets.h"
 #include "render/post/fullscreen.h"
@@ -31,6 +33,7 @@ class Tiles : public SurfaceMethod {
   std::shared_ptr<const tiles::Clusters> clusters_;
   tiles::FieldTiles camera_, light_;  // lists of the picture outlive a shadow map
   tiles::Planes planes_;
+  double mostBytesPerPixel_ = 0;
 };
 
 void Tiles::addPasses(FrameGraph& graph, ShaderLibrary& shaders, const SurfaceTarget& target) {
@@ -53,17 +56,20 @@ void Tiles::draw(const PassContext& context, ShaderLibrary& shaders, tiles::Fiel
   const tiles::PixelArea& part = planes_.area;
   const int x = part.x - target.area.x, y = part.y - target.area.y;
   std::vector<TextureLease> leases;
+  double bytes = 0;
   // As large as the target, of which the part is a different one in every view.
   const auto bind = [&](const char* name, gl::TextureFormat format, unsigned unit, const void* data) {
     leases.push_back(context.pool().lease(name, {format, target.area.width, target.area.height}));
     leases.back()->write(part.width, part.height, data, x, y);
     glBindTextureUnit(unit, leases.back()->object.name());
+    bytes += 2 * gl::bytesPerTexel(format);  // in main memory, too
   };
   bind("surface depth", gl::TextureFormat::r32f, 0, planes_.depth.data());
   if (channels.albedo) bind("surface albedo", gl::TextureFormat::rgba8, 1, planes_.albedo.data());
   if (channels.normal) bind("surface normal", gl::TextureFormat::rg16, 2, planes_.normal.data());
   if (channels.id) bind("surface id", gl::TextureFormat::r32ui, 3, planes_.id.data());
   if (channels.distance) bind("surface distance", gl::TextureFormat::r32f, 4, planes_.distance.data());
+  mostBytesPerPixel_ = std::max(mostBytesPerPixel_, bytes);
   context.bindTarget();
   glEnable(GL_SCISSOR_TEST);
   glScissor(x, y, part.width, part.height);
@@ -87,7 +93,9 @@ SurfaceStats Tiles::takeStats() {
   stats.notConverged = counts.notConverged;
   stats.details = {{"intervals bounded", static_cast<double>(counts.intervals)},
                    {"intervals halved", static_cast<double>(counts.splits)},
-                   {"windows grown", static_cast<double>(counts.windowGrowths)}};
+                   {"windows grown", static_cast<double>(counts.windowGrowths)},
+                   {"most bytes per pixel", mostBytesPerPixel_}};
+  mostBytesPerPixel_ = 0;
   return stats;
 }
 

@@ -121,6 +121,9 @@ TEST_F(SurfaceBytes, EveryMethodSaysWhatABallTakes) {
     const double small = bytes({24, 18}), large = bytes({96, 72});
     EXPECT_GE(small, 16);
     EXPECT_LE(large, 20'000);
+    const double ofPixels = detail("most bytes per pixel");
+    EXPECT_EQ(ofPixels > 0, method.name != "mesh") << ofPixels;  // whose triangles go into the G-buffer
+    EXPECT_LE(ofPixels, 20'000);
     if (method.name != "tiles") {
       EXPECT_EQ(large, small);
     }
