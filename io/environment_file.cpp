@@ -103,7 +103,7 @@ class RadianceReader {
     if (!known) file_.fail("its FORMAT is not 32-bit_rle_rgbe");
     const std::string size(line());
     int width = 0, height = 0, end = 0;
-    if (std::sscanf(size.c_str(), "-Y %6d +X %6d%n", &height, &width, &end) != 2 ||
+    if (std::sscanf(size.c_str(), "-Y %9d +X %9d%n", &height, &width, &end) != 2 ||
         static_cast<std::size_t>(end) != size.size())
       file_.fail("its rows do not go from left to right and from the top down (-Y height +X width)");
     file_.requireSize(width, height);
