@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "app/label_text.h"
+
 namespace meniscus {
 namespace {
 
@@ -32,6 +34,45 @@ Rgb colorOf(double share) {
 void write(Rgb color, bool opaque, std::byte* pixel) {
   for (int i = 0; i < 3; ++i) pixel[i] = static_cast<std::byte>(color >> (16 - 8 * i) & 0xFFu);
   pixel[3] = opaque ? std::byte{0xFF} : std::byte{0};
+}
+
+// Below the label, a line each, in letters that let the longest fit.
+void writeSummary(const ErrorPicture& errors, const RenderOptions& options, const PanelPlace& place,
+                  PanelCanvas& canvas) {
+  const double label = 0.01 * options.labelSize * options.size.height;
+  std::vector<Label> lines;
+  for (const std::string& line : errors.summary()) lines.push_back({line, {}, 0});
+  const auto drawn = [&](double letters) {
+    return drawLabels(lines, std::max(letters, 1.0), options.labelFont);
+  };
+  const int margin = labelMargin(place);
+  std::vector<LabelSprite> sprites = drawn(0.7 * label);
+  int widest = 1;
+  for (const LabelSprite& sprite : sprites) widest = std::max(widest, sprite.width);
+  if (widest > place.width - 2 * margin) sprites = drawn(0.7 * label * (place.width - 2 * margin) / widest);
+  int top = margin + static_cast<int>(std::lround(1.3 * label));
+  for (const LabelSprite& sprite : sprites) {
+    canvas.write(place, sprite, options.labelColors, margin, top);
+    top += sprite.height;
+  }
+}
+
+// What the colours of an error panel mean, along its lower edge.
+void drawScale(const RenderOptions& options, const PanelPlace& place, PanelCanvas& canvas) {
+  const double letters = std::max(0.007 * options.labelSize * options.size.height, 1.0);
+  const std::vector<LabelSprite> ends =
+      drawLabels({{fmt::format("{:g} Å", kLeastError), {}, 0}, {fmt::format("{:g} Å", kMostError), {}, 0}},
+                 letters, options.labelFont);
+  const int height = std::max(static_cast<int>(std::lround(letters)), 1);
+  int left = height, right = place.width - height;
+  const int top = place.height - 2 * height;
+  const auto middle = [&](const LabelSprite& end) { return top + (height - end.height) / 2; };
+  canvas.write(place, ends[0], options.labelColors, left, middle(ends[0]));
+  canvas.write(place, ends[1], options.labelColors, right - ends[1].width, middle(ends[1]));
+  left += ends[0].width + height / 2;
+  right -= ends[1].width + height / 2;
+  if (right > left)
+    canvas.paste(place, drawErrorScale(right - left, height), right - left, height, left, top);
 }
 
 }  // namespace
@@ -83,6 +124,13 @@ std::vector<std::byte> drawErrorScale(int width, int height) {
     write(colorOf(x / std::max(width - 1, 1)), true, pixels.data() + 4 * i);
   }
   return pixels;
+}
+
+void drawErrorPanel(const ErrorPicture& errors, const RenderOptions& options, const PanelPlace& place,
+                    PanelCanvas& canvas) {
+  canvas.paste(place, errors.pixels);
+  writeSummary(errors, options, place, canvas);
+  drawScale(options, place, canvas);
 }
 
 }  // namespace meniscus

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "app/panels.h"
+#include "app/render_options.h"
 #include "core/hit_image.h"
 #include "core/scene.h"
 
@@ -32,5 +34,9 @@ ErrorPicture drawErrors(const HitImage& picture, const HitImage& truth, const Ba
 
 /// The scale, `width` by `height` pixels, small on the left: RGBA, 8 bits, rows from the top.
 std::vector<std::byte> drawErrorScale(int width, int height);
+
+/// The picture in its panel, with its summary below the label and the scale along the lower edge.
+void drawErrorPanel(const ErrorPicture& errors, const RenderOptions& options, const PanelPlace& place,
+                    PanelCanvas& canvas);
 
 }  // namespace meniscus

@@ -107,6 +107,10 @@ std::vector<PanelPlace> placePanels(std::size_t count, ImageSize whole, std::opt
   return places;
 }
 
+int labelMargin(const PanelPlace& place) {
+  return static_cast<int>(std::lround(kLabelMargin * place.height));
+}
+
 Camera seenBy(const Camera& viewpoint, Camera lens) {
   lens.orientation = viewpoint.orientation;
   lens.target = viewpoint.target;
@@ -150,7 +154,7 @@ void PanelCanvas::paste(const PanelPlace& place, std::span<const std::byte> pict
 }
 
 void PanelCanvas::write(const PanelPlace& place, const LabelSprite& label, const LabelColors& colors) {
-  const int margin = static_cast<int>(std::lround(kLabelMargin * place.height));
+  const int margin = labelMargin(place);
   write(place, label, colors, margin, margin);
 }
 

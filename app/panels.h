@@ -41,6 +41,9 @@ struct PanelPlace {
 /// `divider` (0..1) two pictures of the whole size, the first left of it and the second right of it.
 std::vector<PanelPlace> placePanels(std::size_t count, ImageSize whole, std::optional<double> divider);
 
+/// Between a panel's edges and its label [pixels].
+int labelMargin(const PanelPlace& place);
+
 /// The viewpoint of one camera (orientation, target, distance, nearest, farthest) and the lens of another.
 Camera seenBy(const Camera& viewpoint, Camera lens);
 

@@ -102,45 +102,6 @@ void writeLabel(const std::string& text, double letters, const RenderOptions& op
     canvas.write(place, sprite, options.labelColors);
 }
 
-// Below the label, a line each, in letters that let the longest fit.
-void writeSummary(const ErrorPicture& errors, const RenderOptions& options, const PanelPlace& place,
-                  PanelCanvas& canvas) {
-  const double label = 0.01 * options.labelSize * options.size.height;
-  std::vector<Label> lines;
-  for (const std::string& line : errors.summary()) lines.push_back({line, {}, 0});
-  const auto drawn = [&](double letters) {
-    return drawLabels(lines, std::max(letters, 1.0), options.labelFont);
-  };
-  const int margin = static_cast<int>(std::lround(0.01 * place.height));
-  std::vector<LabelSprite> sprites = drawn(0.7 * label);
-  int widest = 1;
-  for (const LabelSprite& sprite : sprites) widest = std::max(widest, sprite.width);
-  if (widest > place.width - 2 * margin) sprites = drawn(0.7 * label * (place.width - 2 * margin) / widest);
-  int top = margin + static_cast<int>(std::lround(1.3 * label));
-  for (const LabelSprite& sprite : sprites) {
-    canvas.write(place, sprite, options.labelColors, margin, top);
-    top += sprite.height;
-  }
-}
-
-// What the colours of an error panel mean, along its lower edge.
-void drawScale(const RenderOptions& options, const PanelPlace& place, PanelCanvas& canvas) {
-  const double letters = std::max(0.007 * options.labelSize * options.size.height, 1.0);
-  const std::vector<LabelSprite> ends =
-      drawLabels({{fmt::format("{:g} Å", kLeastError), {}, 0}, {fmt::format("{:g} Å", kMostError), {}, 0}},
-                 letters, options.labelFont);
-  const int height = std::max(static_cast<int>(std::lround(letters)), 1);
-  int left = height, right = place.width - height;
-  const int top = place.height - 2 * height;
-  const auto middle = [&](const LabelSprite& end) { return top + (height - end.height) / 2; };
-  canvas.write(place, ends[0], options.labelColors, left, middle(ends[0]));
-  canvas.write(place, ends[1], options.labelColors, right - ends[1].width, middle(ends[1]));
-  left += ends[0].width + height / 2;
-  right -= ends[1].width + height / 2;
-  if (right > left)
-    canvas.paste(place, drawErrorScale(right - left, height), right - left, height, left, top);
-}
-
 }  // namespace
 
 RenderSettings renderSettingsOf(const RenderOptions& options) {
@@ -262,22 +223,15 @@ PictureReport PictureDrawer::render(Picture& picture, RowSink& sink, const Pixel
   return report;
 }
 
-// Of the rays of the first panel's camera; not every ray that a pixel has, but the one through its centre.
-HitImage PictureDrawer::panelHits(const Picture& picture, std::size_t panel, const PanelPlace& place) {
-  const Picture& shown = picture.panels[panel];
-  show(shown.primitives);
-  const View view = makeView(seenBy(picture.scene.camera, picture.panels.front().scene.camera), place.picture,
-                             shown_->bounds());
-  return renderer().renderHits(view, {true, false, false}, shown.options.surface, shown.options.quadrics);
-}
-
-// How far the second panel is from the first.
-void PictureDrawer::drawErrorPanel(const Picture& picture, const PanelPlace& place, PanelCanvas& canvas) {
-  const HitImage truth = panelHits(picture, 0, place), compared = panelHits(picture, 1, place);
-  const ErrorPicture errors = drawErrors(compared, truth, picture.panels.front().scene.background);
-  canvas.paste(place, errors.pixels);
-  writeSummary(errors, picture.options, place, canvas);
-  drawScale(picture.options, place, canvas);
+// How far the second panel is from the first, along the rays of the first one's camera through the pixels'
+// centres.
+void PictureDrawer::renderErrors(const Picture& picture, const PanelPlace& place, PanelCanvas& canvas) {
+  const Picture &first = picture.panels[0], &second = picture.panels[1];
+  const Camera camera = seenBy(picture.scene.camera, first.scene.camera);
+  const HitChannels distances{true, false, false};
+  const HitImage truth = cast(first, camera, place.picture, distances),
+                 compared = cast(second, camera, place.picture, distances);
+  drawErrorPanel(drawErrors(compared, truth, first.scene.background), picture.options, place, canvas);
 }
 
 // One after the other, by the camera of the whole.
@@ -295,7 +249,7 @@ PictureReport PictureDrawer::renderPanels(Picture& picture, RowSink& sink, const
   for (std::size_t i = 0; i < places.size(); ++i) {
     const std::string& text = options.panels[i].label;
     if (options.panels[i].error) {
-      drawErrorPanel(picture, places[i], canvas);
+      renderErrors(picture, places[i], canvas);
       writeLabel(text, letters, options, places[i], canvas);
       continue;
     }
@@ -320,9 +274,14 @@ PictureReport PictureDrawer::renderPanels(Picture& picture, RowSink& sink, const
 }
 
 HitImage PictureDrawer::hits(const Picture& picture) {
+  return cast(picture, picture.scene.camera, picture.options.size, {false, false, true});
+}
+
+HitImage PictureDrawer::cast(const Picture& picture, const Camera& camera, ImageSize size,
+                             const HitChannels& channels) {
   show(picture.primitives);
-  const View view = makeView(picture.scene.camera, picture.options.size, shown_->bounds());
-  return renderer().renderHits(view, {false, false, true}, picture.options.surface, picture.options.quadrics);
+  return renderer().renderHits(makeView(camera, size, shown_->bounds()), channels, picture.options.surface,
+                               picture.options.quadrics);
 }
 
 RenderStats PictureDrawer::takeStats() {

@@ -52,8 +52,9 @@ class PictureDrawer {
   void exportMesh(Picture& picture);
   PictureReport render(Picture& picture, RowSink& sink, const PixelLayout& layout, const std::string& label);
   PictureReport renderPanels(Picture& picture, RowSink& sink, const std::string& label);
-  void drawErrorPanel(const Picture& picture, const PanelPlace& place, PanelCanvas& canvas);
-  HitImage panelHits(const Picture& picture, std::size_t panel, const PanelPlace& place);
+  void renderErrors(const Picture& picture, const PanelPlace& place, PanelCanvas& canvas);
+  /// What the rays of a camera meet of a picture with primitives.
+  HitImage cast(const Picture& picture, const Camera& camera, ImageSize size, const HitChannels& channels);
   void show(std::shared_ptr<const Primitives> primitives);
   Renderer& renderer();
 
