@@ -297,13 +297,23 @@ TEST(TracedLight, TotalReflectionKeepsLightWithin) {
   }
 }
 
+template <typename Visit>
+void forEachRay(const View& view, const Primitives& primitives, const Visit& visit) {
+  const bvh::ViewRays rays(view, primitives.origin);
+  for (int y = 0; y < view.size.height; ++y) {
+    for (int x = 0; x < view.size.width; ++x) {
+      const auto ray = rays.through({x + 0.5, y + 0.5});
+      visit(SceneRay{ray.origin, ray.direction, ray.start});
+    }
+  }
+}
+
 // Wherever light of strength 1 comes from all around, that is what glass shows, however many walls, and
 // nothing is ever brighter than what there is.
 TEST(TracedLight, GlassNeitherMakesNorLosesLight) {
   const auto primitives = packedBalls(60, 7);
   const View view = viewOfAll(*primitives, {24, 18});
   const SceneTracer scene(primitives);
-  const bvh::ViewRays rays(view, primitives->origin);
   RayScratch scratch;
   TraceCounts counts;
   for (const auto& [reflect, refract] : {std::pair{0, 1}, std::pair{2, 3}, std::pair{4, 16}}) {
@@ -312,18 +322,14 @@ TEST(TracedLight, GlassNeitherMakesNorLosesLight) {
     white.background.color = 0xFFFFFF;
     const TracedLightSettings sky = glassOf(1.5, reflect, refract);
     const LightTracer inWhite(scene, view, white), inSky(scene, view, sky);
-    for (int y = 0; y < 18; ++y) {
-      for (int x = 0; x < 24; ++x) {
-        const auto ray = rays.through({x + 0.5, y + 0.5});
-        const SceneRay at{ray.origin, ray.direction, ray.start};
-        const glm::dvec3 light = inWhite.radiance(at, scratch, counts);
-        EXPECT_NEAR(light.x, 1, 1e-12);
-        EXPECT_NEAR(light.z, 1, 1e-12);
-        const glm::dvec3 blue = inSky.radiance(at, scratch, counts);
-        EXPECT_LE(std::max({blue.x, blue.y, blue.z}), 0.96 + 1e-12);
-        EXPECT_GE(std::min({blue.x, blue.y, blue.z}), 0.16 - 1e-12);
-      }
-    }
+    forEachRay(view, *primitives, [&](const SceneRay& ray) {
+      const glm::dvec3 light = inWhite.radiance(ray, scratch, counts);
+      EXPECT_NEAR(light.x, 1, 1e-12);
+      EXPECT_NEAR(light.z, 1, 1e-12);
+      const glm::dvec3 blue = inSky.radiance(ray, scratch, counts);
+      EXPECT_LE(std::max({blue.x, blue.y, blue.z}), 0.96 + 1e-12);
+      EXPECT_GE(std::min({blue.x, blue.y, blue.z}), 0.16 - 1e-12);
+    });
   }
 }
 
@@ -342,7 +348,6 @@ TEST(TracedLight, AConstantPictureOfTheSurroundingsGivesTheConstant) {
   const auto primitives = packedBalls(60, 7);
   const View view = viewOfAll(*primitives, {24, 18});
   const SceneTracer scene(primitives);
-  const bvh::ViewRays rays(view, primitives->origin);
   RayScratch scratch;
   TraceCounts counts;
   TracedLightSettings settings = glassOf(1.5, 4, 16);
@@ -350,15 +355,12 @@ TEST(TracedLight, AConstantPictureOfTheSurroundingsGivesTheConstant) {
   settings.trace.environmentMap =
       std::make_shared<const EnvironmentMap>(6, 3, std::vector<glm::vec3>(18, {2, 0.5f, 0.125f}));
   const LightTracer tracer(scene, view, settings);
-  for (int y = 0; y < 18; ++y) {
-    for (int x = 0; x < 24; ++x) {
-      const auto ray = rays.through({x + 0.5, y + 0.5});
-      const glm::dvec3 light = tracer.radiance({ray.origin, ray.direction, ray.start}, scratch, counts);
-      EXPECT_NEAR(light.x, 2, 1e-11);
-      EXPECT_NEAR(light.y, 0.5, 1e-11);
-      EXPECT_NEAR(light.z, 0.125, 1e-11);
-    }
-  }
+  forEachRay(view, *primitives, [&](const SceneRay& ray) {
+    const glm::dvec3 light = tracer.radiance(ray, scratch, counts);
+    EXPECT_NEAR(light.x, 2, 1e-11);
+    EXPECT_NEAR(light.y, 0.5, 1e-11);
+    EXPECT_NEAR(light.z, 0.125, 1e-11);
+  });
 }
 
 // Red from the left, blue from the right, green from above: a ball mirrors each on its side, from whichever
