@@ -482,14 +482,16 @@ void addOtherOptions(CLI::App& app, RenderOptions& o) {
   OptionGroup group(app, "Other");
   group.value("--backend", "auto|egl|osmesa", "How to reach OpenGL [auto]; see 'meniscus doctor'",
               [&o](auto& n, auto& v) { o.backend = parseBackend(n, v); });
-  group.value("--quadrics", "splat|tiles|auto",
+  group.value("--quadrics", "splat|tiles|tiles_glsl|auto",
               "Spheres, cylinders and ellipsoids drawn by the GPU, a\n"
-              "rectangle each (splat), or by the processor (tiles) [auto:\n"
-              "tiles where there is no GPU]; the picture is the same",
+              "rectangle each (splat), or from lists of screen tiles, by the\n"
+              "processor (tiles) or by shaders (tiles_glsl) [auto: tiles\n"
+              "where there is no GPU, else splat]; the picture is the same",
               [&o](auto& n, auto& v) {
                 o.quadrics = parseChoice<QuadricMethod>(n, v,
                                                         {{"splat", QuadricMethod::splat},
                                                          {"tiles", QuadricMethod::tiles},
+                                                         {"tiles_glsl", QuadricMethod::tilesGlsl},
                                                          {"auto", QuadricMethod::automatic}});
               });
   group.flag("--explain",

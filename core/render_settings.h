@@ -100,9 +100,10 @@ struct TraceSettings {
 
 /// How spheres, cylinders and ellipsoids are drawn.
 enum class QuadricMethod : std::uint8_t {
-  splat,     ///< a rectangle for each, by the GPU (render/quadrics.h)
-  tiles,     ///< from tile lists, by the processor (render/tile_quadrics.h)
-  automatic  ///< tiles where OpenGL itself runs on the processor, else splat
+  splat,      ///< a rectangle for each, by the GPU (render/quadrics.h)
+  tiles,      ///< from tile lists, by the processor (render/tile_quadrics.h)
+  tilesGlsl,  ///< from the same lists, by shaders (render/tile_quadrics_glsl.h)
+  automatic   ///< tiles where OpenGL itself runs on the processor, else splat
 };
 
 /// How metaball surfaces are drawn; which methods and parameters there are: render/surface_method.h.

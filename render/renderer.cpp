@@ -28,6 +28,7 @@
 #include "render/quadrics.h"
 #include "render/surface_passes.h"
 #include "render/tile_quadrics.h"
+#include "render/tile_quadrics_glsl.h"
 #include "render/triangles.h"
 #include "render/view_block.h"
 
@@ -132,7 +133,7 @@ enum class Surfaces : std::uint8_t { opaque, apart };
 struct KeptShadowMap {
   ShadowMap map;
   SurfaceSettings surface;
-  bool tiles = false;
+  QuadricMethod quadrics = QuadricMethod::automatic;
   bool translucent = false;  // surfaces cast no shadow
   TextureLease texture{nullptr, ReturnToPool{}};
 };
@@ -145,6 +146,7 @@ struct Renderer::Impl {
   TexturePool pool;
   QuadricBuffers quadrics;
   TileQuadrics tileQuadrics;
+  GlslTileQuadrics glslTileQuadrics;
   QuadricChoice quadricChoice;
   TriangleBuffers triangles;
   SurfacePasses surfaces;
@@ -170,6 +172,7 @@ struct Renderer::Impl {
   explicit Impl(const RendererOptions& o)
       : options(o), shaders(o.shaderDir), effects(chooseEffects(o.effectsOnProcessor)) {
     tileQuadrics.setPrimitives(primitives);
+    glslTileQuadrics.setPrimitives(primitives);
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     glDisable(GL_DITHER);
     glDisable(GL_MULTISAMPLE);
@@ -180,7 +183,7 @@ struct Renderer::Impl {
     stats.omissions.clear();  // of an earlier picture
     Stopwatch watch(stats.uploadMs);
     quadricChoice = chooseQuadrics(method);
-    if (!quadricChoice.tiles) quadrics.upload(*primitives);
+    if (quadricChoice.method == QuadricMethod::splat) quadrics.upload(*primitives);
     triangles.upload(primitives->mesh);
     surfaces.prepare(primitives, surface);
     if (!viewUniforms.object) viewUniforms = gl::Buffer::updatable(sizeof(f32::ViewBlock));
@@ -197,10 +200,15 @@ struct Renderer::Impl {
   // been called alike.
   void addScene(FrameGraph& graph, const View& view, const Tile& tile, glm::vec2 sampleShift,
                 const GBufferRefs& gbuffer, Surfaces drawn, const std::string& prefix = {}) {
-    if (quadricChoice.tiles) {
-      tileQuadrics.add(graph, view, tile, sampleShift, gbuffer, prefix);
-    } else {
-      addQuadrics(graph, quadrics, shaders, gbuffer, prefix);
+    switch (quadricChoice.method) {
+      case QuadricMethod::tiles:
+        tileQuadrics.add(graph, view, tile, sampleShift, gbuffer, prefix);
+        break;
+      case QuadricMethod::tilesGlsl:
+        glslTileQuadrics.add(graph, shaders, view, tile, sampleShift, gbuffer, prefix);
+        break;
+      default:
+        addQuadrics(graph, quadrics, shaders, gbuffer, prefix);
     }
     leaveOutOtherQuadrics(graph, prefix);
     addTriangles(graph, triangles, shaders, gbuffer, prefix);
@@ -209,7 +217,7 @@ struct Renderer::Impl {
   }
 
   void leaveOutOtherQuadrics(FrameGraph& graph, const std::string& prefix) {
-    if (!quadricChoice.tiles) {
+    if (quadricChoice.method == QuadricMethod::splat) {
       graph.leaveOut("pass " + prefix + "tiles", "quadrics are splatted: " + quadricChoice.reason);
       return;
     }
@@ -320,6 +328,7 @@ void Renderer::setPrimitives(std::shared_ptr<const Primitives> primitives) {
   impl_->quadrics.clear();
   impl_->triangles.clear();
   impl_->tileQuadrics.setPrimitives(impl_->primitives);
+  impl_->glslTileQuadrics.setPrimitives(impl_->primitives);
   impl_->tracedLight.setPrimitives(impl_->primitives);
   impl_->occlusionBuffers.clear();
   impl_->silhouetteUniforms.clearGroups();
@@ -346,7 +355,7 @@ void Renderer::Impl::drawShadowMap(Frame& frame) {
                     shadows.mode == ShadowMode::soft ? shadows.penumbra : 0);
   KeptShadowMap& kept = keptShadowMap;
   if (kept.map.depth != nullptr && kept.map.light == light && kept.surface == frame.settings.surface &&
-      kept.tiles == quadricChoice.tiles && kept.translucent == frame.translucent) {
+      kept.quadrics == quadricChoice.method && kept.translucent == frame.translucent) {
     frame.shadowMap = kept.map;
     stats.omissions.push_back({"pass shadow map", "the light and the scene are those of the picture before"});
     return;
@@ -370,7 +379,7 @@ void Renderer::Impl::drawShadowMap(Frame& frame) {
     texture->read(whole.width, whole.height, whole.width, heights.data());
     frame.shadowMap.heights = std::make_shared<const std::vector<float>>(std::move(heights));
   }
-  kept = {frame.shadowMap, frame.settings.surface, quadricChoice.tiles, frame.translucent,
+  kept = {frame.shadowMap, frame.settings.surface, quadricChoice.method, frame.translucent,
           std::move(texture)};
 }
 
@@ -680,6 +689,7 @@ RenderStats Renderer::stats() const {
   stats.programs = impl_->shaders.compiled();
   stats.compileMs = impl_->shaders.compileMs() - impl_->forgottenCompileMs;
   stats.buffers = impl_->quadrics.buffers();
+  for (ResourceStats& buffer : impl_->glslTileQuadrics.buffers()) stats.buffers.push_back(std::move(buffer));
   for (ResourceStats& buffer : impl_->triangles.buffers()) stats.buffers.push_back(std::move(buffer));
   for (ResourceStats& buffer : impl_->surfaces.buffers()) stats.buffers.push_back(std::move(buffer));
   const gl::Buffer& groups = impl_->silhouetteUniforms.groups();

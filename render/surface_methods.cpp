@@ -13,6 +13,7 @@
 #include "render/surface/mesh.h"
 #include "render/surface/newton.h"
 #include "render/surface/tiles.h"
+#include "render/surface/tiles_glsl.h"
 #include "render/surface_method.h"
 
 namespace meniscus {
@@ -20,6 +21,8 @@ namespace meniscus {
 std::span<const SurfaceMethodInfo> surfaceMethods() {
   static const SurfaceMethodInfo kMethods[] = {
       {"tiles", "exact, by the processor, from lists of each screen tile (docs/methods.md)", {}, makeTiles},
+      {"tiles_glsl", "the same lists, cast by shaders: exact, for a GPU", tilesGlslParameters(),
+       makeTilesGlsl},
       {"bezier", "depth-peeled Bezier clipping (Kanamori, Szego and Nishita 2008)", bezierParameters(),
        makeBezier},
       {"lists", "fragment lists (Szecsi and Illes 2012)", listsParameters(), makeLists, true},

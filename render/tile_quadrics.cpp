@@ -8,12 +8,14 @@
 namespace meniscus {
 
 QuadricChoice chooseQuadrics(QuadricMethod method) {
+  using enum QuadricMethod;
   const std::string cast = "drawn from tiles by " + tiles::instructionSet() + " instructions: ";
-  if (method == QuadricMethod::tiles) return {true, cast + "--quadrics tiles"};
-  if (method == QuadricMethod::splat) return {false, "--quadrics splat"};
+  if (method == tiles) return {tiles, cast + "--quadrics tiles"};
+  if (method == tilesGlsl) return {tilesGlsl, "drawn from tiles by shaders: --quadrics tiles_glsl"};
+  if (method == splat) return {splat, "--quadrics splat"};
   const gl::Device device = gl::queryDevice();
-  if (device.software) return {true, cast + device.name + " runs on the processor"};
-  return {false, device.name + " is a GPU, which splats"};
+  if (device.software) return {tiles, cast + device.name + " runs on the processor"};
+  return {splat, device.name + " is a GPU, which splats"};
 }
 
 void TileQuadrics::setPrimitives(std::shared_ptr<const Primitives> primitives) {

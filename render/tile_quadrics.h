@@ -12,9 +12,9 @@
 
 namespace meniscus {
 
-/// Whether quadrics are drawn from tiles, and why, for --explain.
+/// How quadrics are drawn, and why, for --explain.
 struct QuadricChoice {
-  bool tiles = false;
+  QuadricMethod method = QuadricMethod::splat;  ///< not automatic
   std::string reason;
 };
 /// A context must be current.

@@ -40,7 +40,8 @@ struct NamedQuadricMethod {
   QuadricMethod method;
 };
 inline constexpr NamedQuadricMethod kQuadricMethods[] = {{"quadrics-splat", QuadricMethod::splat},
-                                                         {"quadrics-tiles", QuadricMethod::tiles}};
+                                                         {"quadrics-tiles", QuadricMethod::tiles},
+                                                         {"quadrics-tiles_glsl", QuadricMethod::tilesGlsl}};
 /// Nothing if it is not one of them.
 std::optional<QuadricMethod> quadricMethodNamed(const std::string& name);
 /// Columns of the matrix: every way to draw quadrics, and every surface method.

@@ -16,7 +16,8 @@ void main() {
   vec2 pixel = gl_FragCoord.xy + uView.tile.xy;
   vec3 direction = rayDirection(uView, pixel);
   vec3 point = rayPoint(uView, pixel, vPixel.xy, vPixel.zw, vView.xyz, vDepth.x, vDepth.y > 0.5);
-  SurfacePoint s = visibleEnd(cylinderChord(point, direction, vAxis.xyz, vAxis.w, vView.w), vView.z);
+  SurfacePoint s;
+  if (!visibleEnd(cylinderChord(point, direction, vAxis.xyz, vAxis.w, vView.w), vView.z, s)) discard;
   bool second = dot(s.position, vAxis.xyz) > 0.0;
   writeShaded(vView.xyz + s.position, direction, normalize(s.normal), second ? vColorsIds.y : vColorsIds.x);
 }

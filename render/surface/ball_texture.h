@@ -1,6 +1,6 @@
 #pragma once
-// Numbers of the balls of a field, for shaders: software drivers read vectors from textures several times as
-// fast as from buffers.
+// Numbers of the balls of a field, or of other primitives, for shaders: software drivers read vectors from
+// textures several times as fast as from buffers.
 
 #include <cstddef>
 
@@ -8,7 +8,7 @@
 
 namespace meniscus {
 
-inline constexpr int kBallsPerRow = 1024;  // as in shaders/include/ball_ray.glsl
+inline constexpr int kBallsPerRow = 1024;  // as in shaders/include/ball_texture.glsl
 
 class BallTexture {
  public:

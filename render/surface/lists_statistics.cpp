@@ -1,12 +1,13 @@
 #include "render/surface/lists_statistics.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace meniscus {
 
-SurfaceStats ListsStatistics::take() {
+SurfaceStats ListsStatistics::take(std::string method) {
   SurfaceStats stats;
-  stats.method = "lists";
+  stats.method = std::move(method);
   double looked = 0, taken = 0, unordered = 0, longest = 0, hits = 0;
   for (const ListsCounts& c : counts.take(stats)) {
     hits += c.common.hits;

@@ -1,5 +1,7 @@
 #pragma once
-// What the method "lists" counts: some of it by its shaders, some beside them.
+// What methods count that cast lists of balls: some of it by their shaders, some beside them.
+
+#include <string>
 
 #include "render/surface/ray_counts.h"
 
@@ -13,7 +15,7 @@ struct ListsCounts {
 
 struct ListsStatistics {
   /// What was counted since the last call; all counts start anew.
-  SurfaceStats take();
+  SurfaceStats take(std::string method);
 
   RayCountCopies<ListsCounts> counts;
   double ballsInView = 0, nodes = 0, mostOfPixel = 0, bands = 0, mostBytesPerPixel = 0;

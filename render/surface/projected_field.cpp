@@ -64,11 +64,12 @@ namespace {
 class Projector {
  public:
   Projector(const MetaballField& field, const std::vector<float>& coreShares, const View& view,
-            const glm::dvec3& origin, const Tile& tile, glm::vec2 sampleShift)
+            const glm::dvec3& origin, const Tile& tile, glm::vec2 sampleShift, std::optional<double> plane)
       : field_(field),
         coreShares_(coreShares),
         view_(view),
         tile_(tile),
+        chosen_(plane.has_value()),
         perspective_(view.projection == Projection::perspective),
         corner_(glm::dvec2(tile.x, tile.y) + glm::dvec2(sampleShift)),
         size_(tile.width, tile.height) {
@@ -77,7 +78,7 @@ class Projector {
       for (std::size_t i = some.begin(); i < some.end(); ++i)
         centers_[i] = view.rotation * ((origin - view.pivot) + glm::dvec3(field.balls[i].center));
     });
-    plane_ = planeOf(centers_, field);
+    plane_ = plane ? static_cast<double>(static_cast<float>(*plane)) : planeOf(centers_, field);
     eyeAbove_ = view.distance - plane_;
   }
 
@@ -100,7 +101,7 @@ class Projector {
   const std::vector<float>& coreShares_;
   const View& view_;
   const Tile& tile_;
-  bool perspective_;
+  bool chosen_, perspective_;
   glm::dvec2 corner_, size_;
   std::vector<glm::dvec3> centers_;
   double plane_ = 0, eyeAbove_ = 0;
@@ -168,7 +169,7 @@ ProjectedField Projector::project(BallOrder order) const {
       const auto i = static_cast<std::uint32_t>(n);
       const glm::dvec3& c = centers_[i];
       glm::dvec2 from, to;
-      const bool seen = c.z - support(i) <= view_.nearZ && box(c, support(i), from, to);
+      const bool seen = chosen_ || (c.z - support(i) <= view_.nearZ && box(c, support(i), from, to));
       const double key = order == BallOrder::depth ? -(c.z + support(i)) : distanceOf(i);
       keys[n] = {seen ? key : std::numeric_limits<double>::infinity(), i};
     }
@@ -221,8 +222,8 @@ ShaderFlags kernelFlags(const Kernel& kernel) {
 
 ProjectedField projectField(const MetaballField& field, const std::vector<float>& coreShares,
                             const View& view, const glm::dvec3& origin, const Tile& tile,
-                            glm::vec2 sampleShift, BallOrder order) {
-  return Projector(field, coreShares, view, origin, tile, sampleShift).project(order);
+                            glm::vec2 sampleShift, BallOrder order, std::optional<double> plane) {
+  return Projector(field, coreShares, view, origin, tile, sampleShift, plane).project(order);
 }
 
 }  // namespace meniscus

@@ -6,6 +6,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <optional>
 #include <vector>
 
 #include "core/metaball_field.h"
@@ -62,10 +63,11 @@ std::vector<float> coreShares(const MetaballField& field);
 /// Flags of shaders/include/field.glsl and kernel.glsl.
 ShaderFlags kernelFlags(const Kernel& kernel);
 
-/// coreShares: of the field.
+/// coreShares: of the field; plane: of a field whose balls were chosen for the target already: all are kept,
+/// and this is the z of FieldBlock::plane.
 ProjectedField projectField(const MetaballField& field, const std::vector<float>& coreShares,
                             const View& view, const glm::dvec3& origin, const Tile& tile,
-                            glm::vec2 sampleShift, BallOrder order);
+                            glm::vec2 sampleShift, BallOrder order, std::optional<double> plane = {});
 
 /// The largest length of a ray per height within a rectangle [pixels of the target, with the sample's shift].
 double largestStretch(const View& view, const Tile& tile, const glm::vec4& box);

@@ -4,6 +4,8 @@
 // eye thousands of ångström away costs no digits. A ball's own numbers are relative to its centre, and its
 // place on the ray is a pair of floats: balls of a millionth of the scene's size keep their digits, too.
 
+#include "include/ball_texture.glsl"
+
 layout(std140, binding = 1) uniform FieldUniforms {
   vec4 uPlane;  // x: z of the plane that places are measured from; y + z: height of the eye above it; w: 0
   vec4 uField;  // x: level; y: exponent of the power kernel; z: 0 sextic, 1 quartic, 2 power; w: 0
@@ -16,14 +18,6 @@ struct BallProjection {
                // centre (or the eye) lies below the plane
   vec4 eye;  // xyz: from the centre to the eye, if the ray is taken from there; w: squared radius of the core
 };
-
-// Textures hold numbers of balls in rows of so many (render/surface/ball_texture.cpp, newton_field.cpp).
-const uint kBallsPerRow = 1024u;
-
-// The first texel of a ball that has `texels` of them.
-ivec2 ballTexel(uint ball, uint texels) {
-  return ivec2(texels * (ball % kBallsPerRow), ball / kBallsPerRow);
-}
 
 // From a texture with ProjectedBall of render/surface/projected_field.h: four texels.
 BallProjection fetchProjection(sampler2D balls, uint ball) {

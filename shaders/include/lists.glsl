@@ -9,6 +9,8 @@ layout(std140, binding = 2) uniform ListsUniforms {
   // x: separators that a pixel's array may hold; y: nodes there is room for; z: 1 if there are layers to
   // join; w: 2
   ivec4 uLists;
+  // Of lists for tiles: x, y: from a pixel of the target to one of the grid; z: tiles in a row; w: 0
+  ivec4 uGrid;
 };
 
 // A pixel's head: index of its first node, plus 1; 0 = none.

@@ -2,9 +2,10 @@
 
 // The list's head when it is in the order of the balls. Balls are drawn in the reverse order and prepended,
 // but OpenGL promises no order between fragments of different primitives: what is out of order is inserted
-// where it belongs.
+// where it belongs. Lists of tiles are made in order.
 uint orderedList(uint head, out bool moved) {
   moved = false;
+#ifndef TILES
   uint last = head;
   uint lastBall = uNodes[head - 1u].x, node = uNodes[head - 1u].y;
   while (node != 0u) {
@@ -30,5 +31,6 @@ uint orderedList(uint head, out bool moved) {
     }
     node = n.y;
   }
+#endif
   return head;
 }

@@ -6,11 +6,11 @@
 FieldSurface surfaceAt(inout uint from, SceneRay ray, Split place) {
   FieldSurface s = emptyFieldSurface();
   float slant = slantOf(ray), until = place.hi + 1e-6 * abs(place.hi);
-  uint nearest = uNodes[from - 1u].x;
+  uint nearest = nodeAt(from).x;
   float most = -1e30;
   bool passing = true;
   for (uint node = from; node != 0u;) {
-    uvec2 n = uNodes[node - 1u];
+    uvec2 n = nodeAt(node);
     if (firstPlace(n.x, slant) > until) break;
     Ball ball = fetchBall(n.x);
     BallRay b = ballOnRay(ball.projection, ray);

@@ -7,11 +7,9 @@ struct SurfacePoint {
   float z;        // view space
 };
 
-// The chord's entry, or its exit seen from inside where the entry lies before the near plane; discards the
-// rest.
-SurfacePoint visibleEnd(Chord chord, float centerZ) {
-  if (!chord.hit) discard;
-  SurfacePoint s;
+// The chord's entry, or its exit seen from inside where the entry lies before the near plane; false if it has
+// neither.
+bool visibleEnd(Chord chord, float centerZ, out SurfacePoint s) {
   s.position = chord.entry;
   s.normal = chord.entryNormal;
   s.z = centerZ + chord.entry.z;
@@ -19,7 +17,6 @@ SurfacePoint visibleEnd(Chord chord, float centerZ) {
     s.position = chord.exit;
     s.normal = -chord.exitNormal;
     s.z = centerZ + chord.exit.z;
-    if (s.z > uView.depth.z) discard;
   }
-  return s;
+  return chord.hit && s.z <= uView.depth.z;
 }

@@ -22,7 +22,8 @@ void main() {
   vec3 point = rayPoint(uView, pixel, vPixel.xy, vPixel.zw, vView.xyz, vDepth.x, vDepth.y > 0.5);
   Chord chord = ellipsoidChord(point, direction, vAxisA.xyz, vAxisB.xyz, cross(vAxisA.xyz, vAxisB.xyz),
                                vec3(vAxisA.w, vAxisB.w, vView.w));
-  SurfacePoint s = visibleEnd(chord, vView.z);
+  SurfacePoint s;
+  if (!visibleEnd(chord, vView.z, s)) discard;
   float distance = 0.0;
 #ifdef DISTANCE
   distance = rayDistance(uView, vView.xyz, makeSplit(vRange.x, vRange.y), s.position);

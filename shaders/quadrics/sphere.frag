@@ -18,7 +18,8 @@ void main() {
   vec2 pixel = gl_FragCoord.xy + uView.tile.xy;
   vec3 direction = rayDirection(uView, pixel);
   vec3 point = rayPoint(uView, pixel, vPixel.xy, vPixel.zw, vView.xyz, vDepth.x, vDepth.y > 0.5);
-  SurfacePoint s = visibleEnd(sphereChord(point, direction, vView.w), vView.z);
+  SurfacePoint s;
+  if (!visibleEnd(sphereChord(point, direction, vView.w), vView.z, s)) discard;
   float distance = 0.0;
 #ifdef DISTANCE
   distance = rayDistance(uView, vView.xyz, makeSplit(vRange.x, vRange.y), s.position);

@@ -1,5 +1,5 @@
 #version 450 core
-// flags: KERNEL_POWER KERNEL_QUARTIC CUBIC LAYERS
+// flags: KERNEL_POWER KERNEL_QUARTIC CUBIC LAYERS TILES
 // Ray casting of a pixel's list (Szécsi and Illés 2012, §6): separators are kept in order in a local array;
 // those that no ball still to come can precede are safe, and are taken out one by one, each changing the
 // running polynomial, which says whether the piece up to the next can cross the surface at all. Where it can,
@@ -191,7 +191,7 @@ bool search(inout Trace trace, int within, float now, float to, ivec2 texel, uin
 bool castList(inout Trace trace, ivec2 texel, ivec2 targetTexel, uint head, SceneRay ray) {
   Split start = startOf(ray);
   uint node = head;
-  uvec2 ball = uNodes[node - 1u];
+  uvec2 ball = nodeAt(node);
   BallRay first = ballOnRay(fetchBall(ball.x).projection, ray);
   Split base = addSplit(first.middle, makeSplit(-sqrt(max(first.halfChord2, 0.0)), 0.0));
   if (placeBetween(start, base) < 0.0) base = start;
@@ -209,7 +209,7 @@ bool castList(inout Trace trace, ivec2 texel, ivec2 targetTexel, uint head, Scen
       ++trace.taken;
       node = ball.y;
       if (node == 0u) break;
-      ball = uNodes[node - 1u];
+      ball = nodeAt(node);
       unsafe = firstPlace(ball.x, slant) - base.hi - 1e-6 * abs(base.hi);
     }
     if (gCount == 0) break;
@@ -242,7 +242,11 @@ void main() {
   oPlace = vec2(0.0);
 #endif
   int pixel = pixelOf(texel);
+#ifdef TILES
+  uint head = nodeOfTile(targetTexel);
+#else
   uint head = uHeads[pixel];
+#endif
   if (head != 0u) {
     bool moved;
     head = orderedList(head, moved);

@@ -1,5 +1,5 @@
 #version 450 core
-// flags: ALBEDO NORMAL ID DISTANCE
+// flags: ALBEDO NORMAL ID DISTANCE TILES
 // What the surface is like where it was found (Szécsi and Illés 2012, §5, shading: from the balls of the
 // pixel's list).
 #define LIST_ACCESS readonly

@@ -1,5 +1,5 @@
 #version 450 core
-// flags: KERNEL_POWER KERNEL_QUARTIC CUBIC LAYERS
+// flags: KERNEL_POWER KERNEL_QUARTIC CUBIC LAYERS TILES
 // Ray casting of a pixel's list without an array, where lists_cast.frag's is too short or its places have too
 // few digits: for each piece the list is walked from the first ball that the ray has not left to the first
 // that cannot begin before the piece's end. Everything is relative to the beginning of the piece, itself a
@@ -64,7 +64,7 @@ Piece pieceFrom(uint from, Split now, float slant, SceneRay ray) {
   Piece piece = Piece(kFar, 0, from, 0u);
   bool passing = true;
   for (uint node = from; node != 0u;) {
-    uvec2 n = uNodes[node - 1u];
+    uvec2 n = nodeAt(node);
     ++gLooks;
     if (firstPlace(n.x, slant) - now.hi - 1e-6 * abs(now.hi) > piece.size) break;
     Span s = spanOf(fetchBall(n.x), ray, now);
@@ -91,7 +91,7 @@ Polygon sumExactly(Piece piece, Split now, float slant, SceneRay ray, float from
   Polygon sum = constantPolygon(-uField.x);
   leastR2 = kFar;
   for (uint node = piece.first; node != 0u;) {
-    uvec2 n = uNodes[node - 1u];
+    uvec2 n = nodeAt(node);
     ++gLooks;
     if (firstPlace(n.x, slant) - now.hi - 1e-6 * abs(now.hi) > piece.size) break;
     Ball ball = fetchBall(n.x);

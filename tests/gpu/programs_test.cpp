@@ -29,6 +29,7 @@ struct ProgramName {
 
 // Fragment shaders that share a vertex shader with others.
 constexpr std::pair<std::string_view, std::string_view> kShared[] = {
+    {"quadrics/tiles.frag", "surface/near_plane.vert"},
     {"surface/bezier_surface.frag", "surface/near_plane.vert"},
     {"surface/bvh_surface.frag", "surface/near_plane.vert"},
     {"surface/lists_surface.frag", "surface/near_plane.vert"},

@@ -14,15 +14,21 @@ namespace meniscus {
 namespace {
 
 class TileQuadricsTest : public test::GlTest {};
+class TileQuadrics : public test::GlTest, public testing::WithParamInterface<QuadricMethod> {};
+INSTANTIATE_TEST_SUITE_P(Both, TileQuadrics, testing::Values(QuadricMethod::tiles, QuadricMethod::tilesGlsl),
+                         [](const auto& method) {
+                           return std::string(method.param == QuadricMethod::tiles ? "tiles" : "tiles_glsl");
+                         });
 
 constexpr HitChannels kAll{.distance = true, .normal = true, .id = true};
 
 // Pixels that differ by more than rounding.
-int differences(const std::shared_ptr<const Primitives>& scene, const View& view, double tolerance) {
+int differences(const std::shared_ptr<const Primitives>& scene, const View& view, QuadricMethod method,
+                double tolerance) {
   Renderer renderer;
   renderer.setPrimitives(scene);
   const HitImage a = renderer.renderHits(view, kAll, {}, QuadricMethod::splat);
-  const HitImage b = renderer.renderHits(view, kAll, {}, QuadricMethod::tiles);
+  const HitImage b = renderer.renderHits(view, kAll, {}, method);
   int different = 0;
   for (std::size_t i = 0; i < a.id.size(); ++i) {
     const bool same =
@@ -33,25 +39,42 @@ int differences(const std::shared_ptr<const Primitives>& scene, const View& view
   return different;
 }
 
-TEST_F(TileQuadricsTest, ShowWhatSplattingShows) {
+TEST_P(TileQuadrics, ShowWhatSplattingShows) {
   constexpr ImageSize kSize{400, 300};
   auto all = std::make_shared<Primitives>(*test::randomChain(600, 5));
   all->ellipsoids = test::randomEllipsoids(300, 6, 0.3)->ellipsoids;
   for (EllipsoidPrimitive& e : all->ellipsoids) e.id += 1000;
   for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
     const View view = test::viewOf(*all, kSize, projection);
-    EXPECT_LE(differences(all, view, 1e-3), kSize.width * kSize.height / 100000 + 1);
+    EXPECT_LE(differences(all, view, GetParam(), 1e-3), kSize.width * kSize.height / 100000 + 1);
   }
 }
 
 // The camera 1e4 and 1e5 Å away, where a pixel is a thousandth of an atom.
-TEST_F(TileQuadricsTest, ShowTheSameFromAfar) {
+TEST_P(TileQuadrics, ShowTheSameFromAfar) {
   const auto scene = test::randomSpheres(300, 8);
   for (const double fovY : {2.4e-3, 2.4e-4}) {
     const View view = test::viewOf(*scene, {300, 300}, Projection::perspective, fovY);
     ASSERT_GT(view.distance, 5e3);
-    EXPECT_LE(differences(scene, view, view.distance * 1e-6), 3);
+    EXPECT_LE(differences(scene, view, GetParam(), view.distance * 1e-6), 3);
   }
+}
+
+// Spheres far below a pixel: none covers a cell of its tile, so all of a tile's are listed.
+TEST_P(TileQuadrics, ListsLongerThanADriverLoopsOver) {
+  const auto scene = test::randomSpheres(20000, 3);
+  View view = test::viewOf(*scene, {48, 36});
+  view.pixelSize *= 3;
+  EXPECT_EQ(differences(scene, view, GetParam(), 1e-3), 0);
+}
+
+// The camera among them, some behind it, some around it.
+TEST_P(TileQuadrics, ShowTheSameFromInside) {
+  auto scene = std::make_shared<Primitives>(*test::randomChain(600, 5));
+  View view = test::viewOf(*scene, {120, 90});
+  view.distance = 1;
+  view.nearZ = 0.95;
+  EXPECT_LE(differences(scene, view, GetParam(), 1e-3), 1);
 }
 
 TEST_F(TileQuadricsTest, NeedNoBufferAndNoProgram) {
@@ -76,10 +99,11 @@ TEST_F(TileQuadricsTest, NeedNoBufferAndNoProgram) {
 }
 
 TEST_F(TileQuadricsTest, AutomaticChoosesByDevice) {
-  EXPECT_EQ(chooseQuadrics(QuadricMethod::automatic).tiles, gl::queryDevice().software);
+  EXPECT_EQ(chooseQuadrics(QuadricMethod::automatic).method,
+            gl::queryDevice().software ? QuadricMethod::tiles : QuadricMethod::splat);
   EXPECT_NE(chooseQuadrics(QuadricMethod::automatic).reason.find(gl::queryDevice().name), std::string::npos);
-  EXPECT_FALSE(chooseQuadrics(QuadricMethod::splat).tiles);
-  EXPECT_TRUE(chooseQuadrics(QuadricMethod::tiles).tiles);
+  for (const QuadricMethod method : {QuadricMethod::splat, QuadricMethod::tiles, QuadricMethod::tilesGlsl})
+    EXPECT_EQ(chooseQuadrics(method).method, method);
 }
 
 }  // namespace
