@@ -164,6 +164,9 @@ struct Renderer::Impl {
   EffectsChoice effects;
   TracedLight tracedLight;
   KeptShadowMap keptShadowMap;
+  // Memory that one picture after the other uses: fresh pages for every frame cost more than what is written.
+  std::shared_ptr<std::vector<float>> shadowHeights;
+  std::vector<std::byte> band;
   std::shared_ptr<const Primitives> primitives = std::make_shared<Primitives>();
   std::shared_ptr<const Primitives> withoutSurfaces;  // the same; made when it is wanted first
   RenderStats stats;
@@ -374,10 +377,10 @@ void Renderer::Impl::drawShadowMap(Frame& frame) {
   execute(graph);
   frame.shadowMap = {light, texture.get()};
   if (effects.processor) {
-    std::vector<float> heights(static_cast<std::size_t>(whole.width) *
-                               static_cast<std::size_t>(whole.height));
-    texture->read(whole.width, whole.height, whole.width, heights.data());
-    frame.shadowMap.heights = std::make_shared<const std::vector<float>>(std::move(heights));
+    if (shadowHeights.use_count() != 1) shadowHeights = std::make_shared<std::vector<float>>();
+    shadowHeights->resize(static_cast<std::size_t>(whole.width) * static_cast<std::size_t>(whole.height));
+    texture->read(whole.width, whole.height, whole.width, shadowHeights->data());
+    frame.shadowMap.heights = shadowHeights;
   }
   kept = {frame.shadowMap, frame.settings.surface, quadricChoice.method, frame.translucent,
           std::move(texture)};
@@ -543,7 +546,8 @@ void Renderer::renderPicture(const View& view, const Lighting& lighting, const B
   const std::size_t rowBytes = pixelBytes * static_cast<std::size_t>(view.size.width);
   const TileSize tileSize =
       chooseTileSize(view.size, static_cast<int>(pixelBytes), r.options.maxTileSize, frame.margin);
-  std::vector<std::byte> band, colors;
+  std::vector<std::byte>& band = r.band;
+  std::vector<std::byte> colors;
   LayerTexels texels;
   const double pixels = static_cast<double>(view.size.width) * view.size.height;
   double drawn = 0, told = 0;  // shares of the picture

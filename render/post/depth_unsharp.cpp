@@ -75,7 +75,7 @@ TextureRef addDepthUnsharp(FrameGraph& graph, const UnsharpKernel& kernel,
         graph.create("depth difference", {gl::TextureFormat::r32f, tile.width, tile.height});
     graph.addPass("depth unsharp", {gbuffer.depth, gbuffer.normal}, {{out, 0}},
                   [&uniforms, reader, gbuffer, out, tile](const PassContext& context) {
-                    std::vector<float> difference;
+                    std::vector<float>& difference = reader->numbers();
                     unsharpDepth(reader->read(context, gbuffer), uniforms.block(), difference);
                     context.texture(out).write(tile.width, tile.height, difference.data(), 0, 0);
                   });

@@ -93,9 +93,8 @@ TextureRef addShadow(FrameGraph& graph, const ShadowSettings& settings, const Sh
     graph.addPass(
         "shadow", {gbuffer.depth, gbuffer.normal}, {{visibility, 0}},
         [&uniforms, reader, gbuffer, heights = map.heights, visibility, soft](const PassContext& context) {
-          effects::Shares shares;
-          lookUpShadow(reader->read(context, gbuffer), uniforms.filter(), *heights, soft, shares);
-          reader->write(context, visibility, shares);
+          lookUpShadow(reader->read(context, gbuffer), uniforms.filter(), *heights, soft, reader->shares());
+          reader->write(context, visibility, reader->shares());
         });
     return visibility;
   }

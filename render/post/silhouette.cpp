@@ -62,16 +62,15 @@ TextureRef addSilhouette(FrameGraph& graph, const SilhouetteSettings& settings,
     reads.push_back(gbuffer.id);
   }
   if (reader != nullptr && !settings.creases) {
-    graph.addPass("silhouette", reads, {{lines, 0}},
-                  [&uniforms, reader, gbuffer, lines, groups = settings.groups](const PassContext& context) {
-                    const bool ids = groups != LineGroups::none;
-                    const effects::OutlineGroups byGroup{ids, groups == LineGroups::atoms
-                                                                  ? std::span<const std::uint32_t>()
-                                                                  : uniforms.groupsById()};
-                    effects::Shares shares;
-                    drawOutlines(reader->read(context, gbuffer, ids), uniforms.block(), byGroup, shares);
-                    reader->write(context, lines, shares);
-                  });
+    graph.addPass(
+        "silhouette", reads, {{lines, 0}},
+        [&uniforms, reader, gbuffer, lines, groups = settings.groups](const PassContext& context) {
+          const bool ids = groups != LineGroups::none;
+          const effects::OutlineGroups byGroup{
+              ids, groups == LineGroups::atoms ? std::span<const std::uint32_t>() : uniforms.groupsById()};
+          drawOutlines(reader->read(context, gbuffer, ids), uniforms.block(), byGroup, reader->shares());
+          reader->write(context, lines, reader->shares());
+        });
     return lines;
   }
   const TextureRef borders = graph.create("borders", {gl::TextureFormat::r16, width, height});

@@ -20,8 +20,15 @@ class SurfaceReader {
   /// Writes an effect's result into a texture of the frame's size and format R16.
   void write(const PassContext& context, TextureRef target, const effects::Shares& shares) const;
 
+  // Room for what an effect computes before it is written: fresh memory for every frame would cost as much as
+  // the effect.
+  effects::Shares& shares() { return shares_; }
+  std::vector<float>& numbers() { return numbers_; }
+
  private:
   effects::SurfacePlanes planes_;
+  effects::Shares shares_;
+  std::vector<float> numbers_;
   bool surface_ = false, ids_ = false;
 };
 
