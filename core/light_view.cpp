@@ -37,6 +37,11 @@ double pixelFootprint(const View& view, const BoundingSphere& bounds) {
   return view.pixelSize * std::max(nearest, 0.1 * bounds.radius);
 }
 
+double shadowTexelSize(double footprint, double penumbra, double thinnest) {
+  constexpr double kTexelsOfPenumbra = 10, kTexelsOfRadius = 6;
+  return std::max(footprint, std::min(penumbra / kTexelsOfPenumbra, thinnest / kTexelsOfRadius));
+}
+
 View makeLightView(const View& camera, const DirectionalLight& light, const BoundingSphere& bounds,
                    double texelSize, int maxSize, double margin) {
   const glm::dmat3 fromCamera = lightAxes(light);

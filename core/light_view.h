@@ -15,4 +15,9 @@ View makeLightView(const View& camera, const DirectionalLight& light, const Boun
 /// Size of a pixel of `view` [Å] at the nearest visible part of `bounds`.
 double pixelFootprint(const View& view, const BoundingSphere& bounds);
 
+/// Size of a texel [Å] of the map for shadows as wide as `penumbra` [Å]: `footprint`, but no less than a
+/// tenth of the penumbra, below which nothing is gained (docs/measured/shadow_error.md), if the thinnest
+/// thing that casts a shadow, of radius `thinnest` [Å], is still six texels from its middle to its rim.
+double shadowTexelSize(double footprint, double penumbra, double thinnest);
+
 }  // namespace meniscus

@@ -282,6 +282,17 @@ Primitives buildPrimitives(const Scene& scene, LineGroups groups) {
   return out;
 }
 
+double Primitives::thinnestRadius() const {
+  if (!mesh.empty()) return 0;
+  float least = std::numeric_limits<float>::infinity();
+  for (const SpherePrimitive& s : spheres) least = std::min(least, s.radius);
+  for (const CylinderPrimitive& c : cylinders) least = std::min(least, c.radius);
+  for (const EllipsoidPrimitive& e : ellipsoids) least = std::min(least, e.shortest);
+  for (const MetaballField& field : surfaces)
+    for (const Metaball& b : field.balls) least = std::min(least, 0.5f * b.support);
+  return static_cast<double>(least);
+}
+
 BoundingSphere Primitives::bounds() const {
   if (empty()) return {origin, 0.0};
   glm::vec3 low(std::numeric_limits<float>::infinity()), high(-low);

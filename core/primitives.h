@@ -59,6 +59,9 @@ struct Primitives {
   /// Nothing beside the surfaces.
   bool onlySurfaces() const { return noQuadrics() && mesh.empty(); }
   BoundingSphere bounds() const;  ///< world space
+  /// The smallest radius of what there is to see [Å]: of a metaball half its support, of an ellipsoid its
+  /// shortest; 0 if there are triangles, infinity if there is nothing.
+  double thinnestRadius() const;
 };
 
 /// All objects of a scene; residues or chains get Primitives::groups, which are different in every placement.

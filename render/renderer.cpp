@@ -138,6 +138,12 @@ struct KeptShadowMap {
   TextureLease texture{nullptr, ReturnToPool{}};
 };
 
+// What of the primitives a shadow map depends on.
+struct ShadowCasters {
+  BoundingSphere bounds;
+  double thinnest;
+};
+
 }  // namespace
 
 struct Renderer::Impl {
@@ -164,6 +170,7 @@ struct Renderer::Impl {
   EffectsChoice effects;
   TracedLight tracedLight;
   KeptShadowMap keptShadowMap;
+  std::optional<ShadowCasters> extent;  // of the primitives; found out when it is wanted first
   // Memory that one picture after the other uses: fresh pages for every frame cost more than what is written.
   std::shared_ptr<std::vector<float>> shadowHeights;
   std::vector<std::byte> band;
@@ -336,6 +343,7 @@ void Renderer::setPrimitives(std::shared_ptr<const Primitives> primitives) {
   impl_->occlusionBuffers.clear();
   impl_->silhouetteUniforms.clearGroups();
   impl_->keptShadowMap = {};
+  impl_->extent.reset();
   impl_->pool.trim();
 }
 
@@ -350,12 +358,13 @@ void Renderer::setPreview(PicturePreview preview) {
 
 // The same primitives as seen from the key light, with only their depth wanted.
 void Renderer::Impl::drawShadowMap(Frame& frame) {
-  const BoundingSphere bounds = primitives->bounds();
+  if (!extent) extent = {primitives->bounds(), primitives->thinnestRadius()};
+  const auto& [bounds, thinnest] = *extent;
   const int maxSize = largestShadowMap(frame.view.size);
   const ShadowSettings& shadows = frame.settings.shadows;
-  const View light =
-      makeLightView(frame.view, frame.shade.lighting.key, bounds, pixelFootprint(frame.view, bounds), maxSize,
-                    shadows.mode == ShadowMode::soft ? shadows.penumbra : 0);
+  const double penumbra = shadows.mode == ShadowMode::soft ? shadows.penumbra : 0;
+  const double texel = shadowTexelSize(pixelFootprint(frame.view, bounds), penumbra, thinnest);
+  const View light = makeLightView(frame.view, frame.shade.lighting.key, bounds, texel, maxSize, penumbra);
   KeptShadowMap& kept = keptShadowMap;
   if (kept.map.depth != nullptr && kept.map.light == light && kept.surface == frame.settings.surface &&
       kept.quadrics == quadricChoice.method && kept.translucent == frame.translucent) {

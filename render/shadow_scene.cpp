@@ -11,7 +11,7 @@
 namespace meniscus {
 
 ShadowScene::ShadowScene(const Primitives& primitives, const View& view, const DirectionalLight& key,
-                         double penumbra)
+                         double penumbra, double texelSize)
     : view_(view), tile_{0, 0, view.size.width, view.size.height} {
   glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
   glDisable(GL_DITHER);
@@ -26,7 +26,8 @@ ShadowScene::ShadowScene(const Primitives& primitives, const View& view, const D
   const BoundingSphere bounds = primitives.bounds();
   const gl::Limits limits = gl::queryLimits();
   const int maxSize = std::min({8192, limits.textureSize, limits.viewportWidth, limits.viewportHeight});
-  const View light = makeLightView(view, key, bounds, pixelFootprint(view, bounds), maxSize, penumbra);
+  if (texelSize == 0) texelSize = pixelFootprint(view, bounds);
+  const View light = makeLightView(view, key, bounds, texelSize, maxSize, penumbra);
   const Tile whole{0, 0, light.size.width, light.size.height};
   setView(light, whole);
   mapGraph_ = std::make_unique<FrameGraph>(pool_);

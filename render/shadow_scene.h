@@ -18,9 +18,10 @@ namespace meniscus {
 
 class ShadowScene {
  public:
-  /// Needs a current context. `penumbra` [Å]: the map reaches so far beyond what is seen.
+  /// Needs a current context. `penumbra` [Å]: the map reaches so far beyond what is seen; texelSize [Å]: of
+  /// the map, a pixel's if 0.
   ShadowScene(const Primitives& primitives, const View& view, const DirectionalLight& key,
-              double penumbra = 2);
+              double penumbra = 2, double texelSize = 0);
 
   /// Share of the key light that arrives, rows from the bottom; 0 on the background. `sample` of
   /// `sampleCount`: see ShadowUniforms::set.

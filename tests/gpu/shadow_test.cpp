@@ -8,6 +8,7 @@
 #include <glm/gtc/constants.hpp>
 #include <limits>
 
+#include "core/light_view.h"
 #include "render/renderer.h"
 #include "render/shadow_scene.h"
 #include "tests/support/exact_rays.h"
@@ -79,8 +80,13 @@ TEST_F(ShadowTest, ASpheresPenumbraOnAPlaneIsTheShareOfADiscCovered) {
   const View view = viewAt(scene, {200, 160}, 20);
   for (const glm::dvec3 towards : {glm::dvec3(0, 0, 1), glm::dvec3(0.5, 0.3, 1), glm::dvec3(-1, 0.2, 0.8)}) {
     const glm::dvec3 toLight = glm::normalize(towards);
-    ShadowScene shadows(scene, view, lightFrom(view, toLight), 12);
-    for (const double penumbra : {1.0, 3.0, 12.0}) {
+    ShadowScene fine(scene, view, lightFrom(view, toLight), 12);
+    for (const auto& [penumbra, asDrawn] :
+         {std::pair{1.0, false}, {3.0, false}, {12.0, false}, {3.0, true}}) {
+      // As a picture's map is: wider shadows make do with larger texels.
+      const double texel = shadowTexelSize(0, penumbra, kRadius);
+      ShadowScene coarse(scene, view, lightFrom(view, toLight), penumbra, texel);
+      ShadowScene& shadows = asDrawn ? coarse : fine;
       const double radius = penumbra / 2;
       const std::vector<float> many = shadows.visibility(soft(penumbra, 256, 0));
       const std::vector<float> standard = shadows.visibility(soft(penumbra));
@@ -105,6 +111,23 @@ TEST_F(ShadowTest, ASpheresPenumbraOnAPlaneIsTheShareOfADiscCovered) {
       EXPECT_LT(ofStandard.largest, 0.12) << penumbra;
     }
   }
+}
+
+TEST(ShadowTexels, AreNoFinerThanThePenumbraShowsNorCoarserThanWhatCastsIt) {
+  EXPECT_EQ(shadowTexelSize(0.05, 0, 1.5), 0.05) << "a hard shadow: a pixel's";
+  EXPECT_EQ(shadowTexelSize(0.05, 2, 1.5), 0.2);
+  EXPECT_EQ(shadowTexelSize(0.3, 2, 1.5), 0.3) << "pixels that are larger stay";
+  EXPECT_EQ(shadowTexelSize(0.05, 100, 1.5), 0.25) << "a sixth of an atom";
+  EXPECT_EQ(shadowTexelSize(0.05, 2, 0.25), 0.05) << "bonds";
+  EXPECT_EQ(Primitives{}.thinnestRadius(), std::numeric_limits<double>::infinity());
+  Primitives scene;
+  scene.spheres = {{{0, 0, 0}, 1.5f, 0, 1}};
+  EXPECT_EQ(scene.thinnestRadius(), 1.5);
+  scene.cylinders = {{{0, 0, 0}, 0.25f, {1, 0, 0}, 0, 0, 1, 1}};
+  EXPECT_EQ(scene.thinnestRadius(), 0.25);
+  scene.mesh.vertices.emplace_back();
+  scene.mesh.triangles.emplace_back();
+  EXPECT_EQ(scene.thinnestRadius(), 0) << "of ribbons it is not known";
 }
 
 // Whether something is met between the tangent plane at a point and the light, `offset` [Å] aside across the
