@@ -2,16 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "app/picture_drawer.h"
 
 namespace meniscus {
 namespace {
 
-// Effects return before the picture is sharper than this, and go before it is coarser than that.
-constexpr double kSharpEnough = 0.5, kTooCoarse = 0.34;
-// A frame that takes less than this share of the budget leaves room for an effect.
-constexpr double kRoomForEffect = 0.5;
+// How coarse a picture is: its sides are halved by so many levels.
+constexpr int kLevelsToHalf = 4;
+// Effects return before the picture is finer than the first, and go before it is coarser than the second.
+constexpr int kSharpEnough = 4, kCoarsest = 6, kLeastLevel = 11;
+// Frames that take less than these shares of the budget leave room for an effect, or for the pixels of the
+// next level, half as many again.
+constexpr double kRoomForEffect = 0.5, kRoomForPixels = 0.6;
+constexpr double kFarTooSlow = 2;
+constexpr int kFramesToLookAt = 6;
 
 struct Cut {
   const char* name;
@@ -88,31 +94,46 @@ RenderOptions reduced(RenderOptions options, const MovingQuality& quality) {
   return options;
 }
 
+void QualityGovernor::change(int level, int cuts) {
+  level_ = std::clamp(level, 0, kLeastLevel);
+  quality_ = {std::exp2(-static_cast<double>(level_) / kLevelsToHalf), cuts};
+  isNew_ = true;
+  frames_ = 0;
+  worst_ = 0;
+}
+
 void QualityGovernor::reset(int possibleCuts) {
-  quality_ = {kSharpEnough, possibleCuts};
+  change(kSharpEnough, possibleCuts);
   tooSlow_.assign(static_cast<std::size_t>(possibleCuts) + 1, false);
 }
 
 void QualityGovernor::measured(double milliseconds, double budget) {
   const double share = std::max(milliseconds, 1e-3) / budget;
-  double& scale = quality_.scale;
+  // The first of its size makes its textures, too.
+  if (std::exchange(isNew_, false) && share < kFarTooSlow) return;
   const auto cuts = static_cast<std::size_t>(quality_.cuts);
   if (share > 1) {
-    scale /= std::sqrt(std::min(share, 4.0));
-    if (scale < kTooCoarse && cuts + 1 < tooSlow_.size()) {
+    const int coarser =
+        level_ + std::clamp(static_cast<int>(std::ceil(2 * std::log2(share))), 1, kLevelsToHalf);
+    if (coarser > kCoarsest && cuts + 1 < tooSlow_.size()) {
       tooSlow_[cuts] = true;
-      ++quality_.cuts;
-      scale = kTooCoarse;
+      change(kCoarsest, quality_.cuts + 1);
+    } else if (level_ < kLeastLevel) {
+      change(coarser, quality_.cuts);
     }
-    scale = std::max(scale, kLeastScale);
     return;
   }
-  if (share < kRoomForEffect && scale >= kSharpEnough && cuts > 0 && !tooSlow_[cuts - 1]) {
-    --quality_.cuts;
-    return;
+  // More is drawn only if the slowest of some frames left room for it: times vary, and a late frame is felt.
+  worst_ = std::max(worst_, share);
+  if (++frames_ < kFramesToLookAt) return;
+  if (worst_ < kRoomForEffect && level_ <= kSharpEnough && cuts > 0 && !tooSlow_[cuts - 1]) {
+    change(level_, quality_.cuts - 1);
+  } else if (level_ > 0 && worst_ < kRoomForPixels) {
+    change(level_ - 1, quality_.cuts);
+  } else {
+    frames_ = 0;
+    worst_ = 0;
   }
-  // Time grows with the pixels at most: no step goes beyond the budget, if the next frame costs as this one.
-  if (share < 0.8) scale = std::min(1.0, scale * std::min(1.2, std::sqrt(0.9 / share)));
 }
 
 }  // namespace meniscus

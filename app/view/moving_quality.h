@@ -22,10 +22,9 @@ std::vector<std::string> possibleCuts(RenderOptions options, int most = std::num
 /// The options of a frame of a moving picture: one ray per pixel, of `quality`.
 RenderOptions reduced(RenderOptions options, const MovingQuality& quality);
 
+/// Sizes are steps of a fourth of an octave: each that was drawn once has its textures already.
 class QualityGovernor {
  public:
-  static constexpr double kLeastScale = 0.15;
-
   /// Begins anew with the least of everything, for a scene or settings whose cost is not known.
   void reset(int possibleCuts);
   const MovingQuality& quality() const { return quality_; }
@@ -33,8 +32,14 @@ class QualityGovernor {
   void measured(double milliseconds, double budget);
 
  private:
+  void change(int level, int cuts);
+
   MovingQuality quality_;
+  int level_ = 0;
   std::vector<bool> tooSlow_;  // by number of cuts: known to take longer than the budget
+  bool isNew_ = true;          // no frame of this quality was drawn
+  int frames_ = 0;             // of this quality, since it was last looked at
+  double worst_ = 0;           // of these, as a share of the budget
 };
 
 }  // namespace meniscus
