@@ -16,7 +16,7 @@ FieldSurface surfaceAt(inout uint from, SceneRay ray, Split place) {
     BallRay b = ballOnRay(ball.projection, ray);
     float along = placeBetween(b.middle, place);
     float w = (b.halfChord2 - along * along) * ball.inverseR2;
-    if (w > most) {
+    if (w > most && b.halfChord2 > 0.0) {  // lists of tiles have balls that the ray passes by
       most = w;
       nearest = n.x;
     }

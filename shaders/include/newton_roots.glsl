@@ -100,10 +100,14 @@ float largestWithin(Bounds b, float r) {
 }
 
 // Where f becomes positive between two places; at the first it is not, but by rounding or because it became
-// so where another hull has seen to it.
-Found firstRoot(Line line, float from, float to, float support, inout Effort effort) {
+// so where another hull has seen to it. core2: squared radius of the hull's own ball's core.
+Found firstRoot(Line line, float from, float to, float support, float core2, inout Effort effort) {
   Met met = ballsMet(line, from, to);
   ++effort.pieces;
+  if (met.count == 1) {
+    float at = crossCore(coreEnds(0.0, halfCoreChord(core2, line.nearest)), from, to, line.sign < 0.0);
+    return Found(at < kNone, at);
+  }
   ++effort.iterations;
   Value start = valueAt(line, met, from);
   if (start.f > kRounding * start.size) return Found(true, from);
@@ -145,7 +149,7 @@ Found firstRoot(Line line, float from, float to, float support, inout Effort eff
 #else
 // The sum of the largest terms and a trilinear texture have kinks, so there are no such bounds: the first
 // change of sign between places a 32nd of the support apart.
-Found firstRoot(Line line, float from, float to, float support, inout Effort effort) {
+Found firstRoot(Line line, float from, float to, float support, float core2, inout Effort effort) {
   Met met = ballsMet(line, from, to);
   ++effort.pieces;
   float enough = uSolver.x * support, step = support / 32.0;

@@ -54,7 +54,7 @@ const Found kNothing = Found(false, 0.0);
 // §3.1, "single case".
 Found meetCore(Ball ball, SceneRay ray, Split start, float size, inout uint status) {
   BallRay b = ballOnRay(ball.projection, ray);
-  vec2 ends = coreEnds(placeBetween(start, b.middle), halfCoreChord(ball, b));
+  vec2 ends = coreEnds(placeBetween(start, b.middle), halfCoreChord(ball.projection.eye.w, b.nearest));
   if ((status & (kInside | kOutside)) == 0u) status |= isInCore(ends, 0.0) ? kInside : kOutside;
   float at = crossCore(ends, 0.0, size, (status & kInside) != 0u);
   return at < kNone ? Found(true, at) : kNothing;

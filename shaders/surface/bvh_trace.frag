@@ -84,7 +84,7 @@ void findChords(Node leaf, Ray ray, Split base, float length_) {
     }
     gChords[gChordCount] = vec4(middle, b.halfChord2, ball.coefficient, ball.inverseR2);
     gEnds[gChordCount] = ends;
-    gCores[gChordCount] = halfCoreChord(ball, b);
+    gCores[gChordCount] = halfCoreChord(ball.projection.eye.w, b.nearest);
     ++gChordCount;
   }
 }

@@ -113,7 +113,7 @@ Polygon sumExactly(Piece piece, Split now, float slant, SceneRay ray, float from
 // Of a ball alone. true: its core is crossed at `at`, between `from` and `size`.
 bool meetCore(inout Trace trace, Ball ball, SceneRay ray, Split now, float from, float size, out float at) {
   BallRay b = ballOnRay(ball.projection, ray);
-  vec2 ends = coreEnds(placeBetween(now, b.middle), halfCoreChord(ball, b));
+  vec2 ends = coreEnds(placeBetween(now, b.middle), halfCoreChord(ball.projection.eye.w, b.nearest));
   bool within = isInCore(ends, from);
   ++trace.looked;
   if (!trace.known) {

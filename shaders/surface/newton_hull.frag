@@ -9,6 +9,7 @@
 #include "shared/metaball.glsl"
 #include "include/surface_point.glsl"
 #include "include/kernel.glsl"
+#include "include/core.glsl"
 #include "include/newton.glsl"
 #include "include/newton_balls.glsl"
 #include "include/newton_field.glsl"
@@ -161,7 +162,7 @@ void main() {
   for (uint i = 0u; i <= vLists.z; ++i) {
     vec2 stretch = nextStretch(chords, ray, b.middle, from, to);
     if (!(stretch.x < stretch.y)) break;
-    found = firstRoot(line, stretch.x, stretch.y, support, effort);
+    found = firstRoot(line, stretch.x, stretch.y, support, vEye.w, effort);
     if (found.hit) break;
     from = stretch.y;
   }
