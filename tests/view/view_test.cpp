@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "tests/support/paths.h"
+#include "tests/view/display_resources.h"
 #include "tests/view/file_drop.h"
 #include "tests/view/window_fixture.h"
 
@@ -233,6 +234,32 @@ TEST_F(WindowTest, IsResized) {
   ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
   ASSERT_NO_FATAL_FAILURE(saveAndCompare("adrenaline.png"));
   EXPECT_EQ(clipboard().find("--orient"), std::string::npos) << clipboard();
+  EXPECT_EQ(quit(), 0);
+}
+
+TEST_F(WindowTest, ADenseDisplayHasLargerWidgetsAndTheSamePicture) {
+  ASSERT_TRUE(setDisplayResources(display_, "Xft.dpi:\t192\n"));
+  ASSERT_NO_FATAL_FAILURE(open({molecule("adrenaline.pdb"), "--size", "320x240", "--samples", "2"}));
+  ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
+  resize(1280, 1024);
+  ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
+  key("ctrl+c");
+  EXPECT_NE(clipboard().find("--size=" + std::to_string(1280 - 2 * kPanel) + "x1024"), std::string::npos)
+      << clipboard();
+  ASSERT_NO_FATAL_FAILURE(saveAndCompare("adrenaline.png"));
+  EXPECT_EQ(quit(), 0);
+}
+
+TEST_F(WindowTest, GoesOnAfterItWasHidden) {
+  ASSERT_NO_FATAL_FAILURE(open({molecule("adrenaline.pdb"), "--size", "320x240", "--samples", "2"}));
+  ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
+  xdotool({"windowunmap", "--sync", window_});
+  resize(600, 400);
+  xdotool({"windowmap", "--sync", window_});
+  xdotool({"windowfocus", window_});
+  drag(450, 200, 40, 30);
+  ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
+  ASSERT_NO_FATAL_FAILURE(saveAndCompare("adrenaline.png"));
   EXPECT_EQ(quit(), 0);
 }
 
