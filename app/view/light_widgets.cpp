@@ -1,5 +1,6 @@
 #include "app/view/light_widgets.h"
 
+#include <fmt/format.h>
 #include <imgui.h>
 
 #include "app/picture_drawer.h"
@@ -8,9 +9,10 @@
 namespace meniscus {
 namespace {
 
+constexpr Rgb kClear = 0xFFFFFF;
 // Sliders end here; the options take more.
 constexpr int kMostRays = 256;
-constexpr double kMostUsualIndex = 3;
+constexpr double kMostUsualIndex = 3, kLeastUsualWay = 0.5, kMostUsualWay = 200;
 
 void traceWidgets(Document& document, const TraceSettings& trace) {
   optionSlider(document, "shadow rays", "trace-shadows", trace.shadows, 0, kMostRays);
@@ -19,6 +21,15 @@ void traceWidgets(Document& document, const TraceSettings& trace) {
   optionSlider(document, "glass", "refract", trace.refract, 0, kMaxBounces);
   if (!trace.light()) return;
   optionSlider(document, "refractive index", "refractive-index", trace.index, 1, kMostUsualIndex, "%.2f");
+  if (trace.refract > 0) {
+    Rgb color = trace.attenuationColor;
+    if (colorEdit("colour of the glass", color))
+      document.set("attenuation-color", fmt::format("#{:06X}", color), true);
+    if (ImGui::IsItemDeactivatedAfterEdit()) document.endChange();
+    if (color != kClear)
+      optionSlider(document, "deep", "attenuation-distance", trace.attenuationDistance, kLeastUsualWay,
+                   kMostUsualWay, "%.1f Å", true);
+  }
   optionCheck(document, "show the background", "environment", trace.environment == Environment::background,
               "background", "sky");
 }

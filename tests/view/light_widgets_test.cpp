@@ -107,6 +107,18 @@ TEST_F(LightWidgets, RaysAreOptionsAndOneStepEach) {
   }
 }
 
+TEST_F(LightWidgets, GlassHasAColourAndADepthOfIt) {
+  document.set("reflect", "2");
+  EXPECT_FALSE(has("deep"));
+  document.set("refract", "4");
+  EXPECT_FALSE(has("deep")) << "clear glass has none";
+  document.set("attenuation-color", "#80C0FF");
+  slide("deep", 120);
+  ASSERT_TRUE(document.has("attenuation-distance"));
+  EXPECT_GT(std::stod(*document.value("attenuation-distance")), 1);
+  EXPECT_LT(std::stod(*document.value("attenuation-distance")), 200);
+}
+
 TEST_F(LightWidgets, WhatOnlyMirrorsNeedIsShownWithThem) {
   EXPECT_FALSE(has("refractive index"));
   EXPECT_FALSE(has("show the background"));
