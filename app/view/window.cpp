@@ -128,6 +128,7 @@ void Window::open(const std::string& title, ImageSize size) {
         fmt::format("no window with OpenGL 3.3 ({}); 'meniscus render FILE -o OUT.png' needs no "
                     "window",
                     failures));
+  fitIntoScreen();
   glfwMakeContextCurrent(window_);
   loadGl();
   glfwSwapInterval(1);
@@ -145,6 +146,16 @@ void Window::open(const std::string& title, ImageSize size) {
     Window& self = of(window);
     if (self.onDrop) self.onDrop({paths, paths + count});
   });
+}
+
+// What is larger than the screen, without a window manager that sees to it, could not be reached.
+void Window::fitIntoScreen() {
+  int x = 0, y = 0, mostWidth = 0, mostHeight = 0, width = 0, height = 0;
+  if (GLFWmonitor* const monitor = glfwGetPrimaryMonitor())
+    glfwGetMonitorWorkarea(monitor, &x, &y, &mostWidth, &mostHeight);
+  glfwGetWindowSize(window_, &width, &height);
+  if (mostWidth > 0 && mostHeight > 0 && (width > mostWidth || height > mostHeight))
+    glfwSetWindowSize(window_, std::min(width, mostWidth), std::min(height, mostHeight));
 }
 
 void Window::startGui() {

@@ -69,6 +69,7 @@ class Window {
 
  private:
   void open(const std::string& title, ImageSize size);
+  void fitIntoScreen();
   void startGui();
   static Window& of(GLFWwindow* window);
   GLFWwindow* window_ = nullptr;

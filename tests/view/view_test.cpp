@@ -239,9 +239,8 @@ TEST_F(WindowTest, IsResized) {
 
 TEST_F(WindowTest, ADenseDisplayHasLargerWidgetsAndTheSamePicture) {
   ASSERT_TRUE(setDisplayResources(display_, "Xft.dpi:\t192\n"));
-  ASSERT_NO_FATAL_FAILURE(open({molecule("adrenaline.pdb"), "--size", "320x240", "--samples", "2"}));
-  ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
-  resize(1280, 1024);
+  // Twice as large it would not fit on the screen.
+  ASSERT_NO_FATAL_FAILURE(open({molecule("adrenaline.pdb"), "--size", "600x600", "--samples", "2"}));
   ASSERT_NO_FATAL_FAILURE(waitUntilDrawn());
   key("ctrl+c");
   EXPECT_NE(clipboard().find("--size=" + std::to_string(1280 - 2 * kPanel) + "x1024"), std::string::npos)
