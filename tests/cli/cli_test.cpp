@@ -62,6 +62,11 @@ Picture CliTest::render(const std::string& input, const std::vector<std::string>
   return readPicture(folder_ / output);
 }
 
+const Picture& CliTest::usual() const {
+  static const Picture picture = render(kProtein);
+  return picture;
+}
+
 nlohmann::json CliTest::stats(const std::string& input, std::vector<std::string> more) const {
   more.insert(more.end(), {"--stats", "stats.json"});
   render(input, more);

@@ -48,7 +48,10 @@ class CliTest : public testing::Test {
   Picture render(const std::string& input, const std::vector<std::string>& more = {},
                  const std::string& output = "out.png") const;
 
-  /// The same; what --stats wrote.
+  /// The protein drawn so without options; once, however many tests of a process compare with it.
+  const Picture& usual() const;
+
+  /// As render(); what --stats wrote.
   nlohmann::json stats(const std::string& input, std::vector<std::string> more = {}) const;
 
   TemporaryFolder folder_;

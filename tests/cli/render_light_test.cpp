@@ -24,7 +24,7 @@ class RenderLight : public CliTest {
 };
 
 TEST_F(RenderLight, shadowsDarkenAndCostNothingWhenOff) {
-  const Picture off = render(kProtein);
+  const Picture& off = usual();
   const Picture hard = render(kProtein, {"--shadows", "hard"});
   const Picture soft = render(kProtein, {"--shadows", "soft"});
   EXPECT_EQ(render(kProtein, {"--shadows", "off"}).pixels, off.pixels);
@@ -55,12 +55,12 @@ TEST_F(RenderLight, occlusionDarkensByRadiusAndStrength) {
     options.insert(options.end(), more.begin(), more.end());
     return brightness(render(kProtein, options));
   };
-  EXPECT_EQ(render(kProtein, {"--occlusion", "off", "--occlusion-radius", "4"}).pixels,
-            render(kProtein).pixels);
-  EXPECT_LT(light({}), light({"--occlusion-strength", "0.5"}));
-  EXPECT_LT(light({"--occlusion-strength", "0.5"}), light({"--occlusion-strength", "0"}));
-  EXPECT_LT(light({"--occlusion-radius", "0"}), light({}));
-  EXPECT_LT(light({}), light({"--occlusion-radius", "4"}));
+  EXPECT_EQ(render(kProtein, {"--occlusion", "off", "--occlusion-radius", "4"}).pixels, usual().pixels);
+  const double full = light({}), half = light({"--occlusion-strength", "0.5"});
+  EXPECT_LT(full, half);
+  EXPECT_LT(half, light({"--occlusion-strength", "0"}));
+  EXPECT_LT(light({"--occlusion-radius", "0"}), full);
+  EXPECT_LT(full, light({"--occlusion-radius", "4"}));
   EXPECT_NEAR(light({"--occlusion-directions", "128"}), light({"--occlusion-directions", "32"}), 0.01);
   EXPECT_EQ(passes(stats(kProtein, {"--occlusion", "on", "--quadrics", "splat"})),
             (std::vector<std::string>{"occlusion maps", "spheres", "occlusion depth", "occlusion",

@@ -11,17 +11,17 @@ using Options = std::vector<std::string>;
 
 class RenderLines : public CliTest {
  protected:
-  double brightness(const Options& options) const {
-    const Picture picture = render(kProtein, options);
+  static double brightness(const Picture& picture) {
     return std::accumulate(picture.pixels.begin(), picture.pixels.end(), 0.0) /
            static_cast<double>(picture.pixels.size());
   }
+  double brightness(const Options& options) const { return brightness(render(kProtein, options)); }
   std::vector<float> pixels(const Options& options) const { return render(kProtein, options).pixels; }
 };
 
 TEST_F(RenderLines, outlinesDarkenAndCostNothingWhenOff) {
-  const double off = brightness({});
-  EXPECT_EQ(pixels({"--outlines", "off"}), pixels({}));
+  const double off = brightness(usual());
+  EXPECT_EQ(pixels({"--outlines", "off"}), usual().pixels);
   const double silhouettes = brightness({"--outlines", "silhouettes"});
   const double both = brightness({"--outlines", "silhouettes,creases"});
   const double atoms = brightness({"--outlines", "silhouettes,atoms"});
@@ -49,21 +49,21 @@ TEST_F(RenderLines, lineOptionsChangeLines) {
     more.insert(more.end(), {"--outlines", "silhouettes,creases"});
     return brightness(more);
   };
-  const double usual = lined({});
-  EXPECT_EQ(lined({"--line-width", "1.5", "--line-gap", "1", "--crease-angle", "30"}), usual);
-  EXPECT_LT(lined({"--line-width", "3"}), usual);
-  EXPECT_GT(lined({"--line-color", "#f80"}), usual);
+  const double unchanged = lined({});
+  EXPECT_EQ(lined({"--line-width", "1.5", "--line-gap", "1", "--crease-angle", "30"}), unchanged);
+  EXPECT_LT(lined({"--line-width", "3"}), unchanged);
+  EXPECT_GT(lined({"--line-color", "#f80"}), unchanged);
   EXPECT_EQ(lined({"--line-colour", "#ff8800"}), lined({"--line-color", "#f80"}));
-  EXPECT_GT(lined({"--line-strength", "0.5"}), usual);
-  EXPECT_GT(lined({"--line-gap", "20"}), usual);
-  EXPECT_GT(lined({"--crease-angle", "60"}), usual);
-  EXPECT_EQ(pixels({"--outlines", "silhouettes", "--line-strength", "0"}), pixels({}));
+  EXPECT_GT(lined({"--line-strength", "0.5"}), unchanged);
+  EXPECT_GT(lined({"--line-gap", "20"}), unchanged);
+  EXPECT_GT(lined({"--crease-angle", "60"}), unchanged);
+  EXPECT_EQ(pixels({"--outlines", "silhouettes", "--line-strength", "0"}), usual().pixels);
 }
 
 TEST_F(RenderLines, depthUnsharpMasksBothWaysOrDarkens) {
-  EXPECT_EQ(pixels({"--depth-unsharp", "off", "--unsharp-strength", "5"}), pixels({}));
+  EXPECT_EQ(pixels({"--depth-unsharp", "off", "--unsharp-strength", "5"}), usual().pixels);
   const double halo = brightness({"--depth-unsharp", "halo"});
-  EXPECT_LT(halo, brightness({}));
+  EXPECT_LT(halo, brightness(usual()));
   EXPECT_GT(brightness({"--depth-unsharp", "both"}), halo);
   EXPECT_LT(brightness({"--depth-unsharp", "halo", "--unsharp-strength", "8"}), halo);
   EXPECT_NE(pixels({"--depth-unsharp", "both", "--unsharp-radius", "10%"}),
@@ -75,11 +75,11 @@ TEST_F(RenderLines, depthUnsharpMasksBothWaysOrDarkens) {
 }
 
 TEST_F(RenderLines, fogFadesIntoTheBackground) {
-  EXPECT_GT(brightness({"--fog", "0.8"}), brightness({})) << "white";
+  EXPECT_GT(brightness({"--fog", "0.8"}), brightness(usual())) << "white";
   EXPECT_LT(brightness({"--fog", "0.8", "--background", "black"}), brightness({"--background", "black"}));
   const Picture all = render(kProtein, {"--fog", "1", "--fog-start", "-2", "--fog-end", "-1"});
   EXPECT_EQ(all.covered(), 0) << "everything is in it";
-  EXPECT_EQ(pixels({"--fog", "1", "--fog-start", "2", "--fog-end", "3"}), pixels({})) << "nothing is";
+  EXPECT_EQ(pixels({"--fog", "1", "--fog-start", "2", "--fog-end", "3"}), usual().pixels) << "nothing is";
   const Picture layer = render(kProtein, {"--fog", "1", "--background", "transparent"});
   EXPECT_GT(layer.at(32, 24)[3], 0.0f);
   EXPECT_LT(layer.at(32, 24)[3], 1.0f);

@@ -54,15 +54,15 @@ TEST_F(RenderOption, samplesSmoothEdges) {
 }
 
 TEST_F(RenderOption, depthIsBitsPerChannel) {
-  EXPECT_EQ(render(kProtein).bits, 8);
+  EXPECT_EQ(usual().bits, 8);
   EXPECT_EQ(render(kProtein, {"--depth", "8"}).bits, 8);
   const Picture deep = render(kProtein, {"--depth", "16"});
   EXPECT_EQ(deep.bits, 16);
-  EXPECT_NEAR(deep.covered(), render(kProtein).covered(), 1e-9);
+  EXPECT_NEAR(deep.covered(), usual().covered(), 1e-9);
 }
 
 TEST_F(RenderOption, dpiIsRecorded) {
-  EXPECT_EQ(render(kProtein).text.count("XResolution"), 0u);
+  EXPECT_EQ(usual().text.count("XResolution"), 0u);
   const Picture picture = render(kProtein, {"--dpi", "300"});
   const double perUnit = std::stod(picture.text.at("XResolution"));
   EXPECT_NEAR(picture.text.at("ResolutionUnit") == "m" ? perUnit * 0.0254 : perUnit, 300, 0.01);
@@ -109,7 +109,7 @@ TEST_F(RenderOption, colorSchemesDiffer) {
     const auto [entry, added] = seen.emplace(render(kProtein, {"--color", scheme}).pixels, scheme);
     EXPECT_TRUE(added) << scheme << " looks like " << entry->second;
   }
-  EXPECT_EQ(render(kProtein).pixels, render(kProtein, {"--colour", "element"}).pixels);
+  EXPECT_EQ(usual().pixels, render(kProtein, {"--colour", "element"}).pixels);
 }
 
 TEST_F(RenderOption, colorMayBeOneForAll) {
@@ -125,14 +125,14 @@ TEST_F(RenderOption, colorMayBeOneForAll) {
 
 TEST_F(RenderOption, carbonsMayTakeTheirChainsColor) {
   const Picture picture = render(kProtein, {"--carbons", "chain"});
-  EXPECT_NE(picture.pixels, render(kProtein).pixels);
+  EXPECT_NE(picture.pixels, usual().pixels);
   EXPECT_NE(picture.pixels, render(kProtein, {"--color", "chain"}).pixels);
-  EXPECT_EQ(render(kProtein, {"--carbons", "element"}).pixels, render(kProtein).pixels);
+  EXPECT_EQ(render(kProtein, {"--carbons", "element"}).pixels, usual().pixels);
 }
 
 TEST_F(RenderOption, radiiAndScalesChangeSizes) {
-  EXPECT_EQ(render(kProtein, {"--radii", "bondi"}).pixels, render(kProtein).pixels);
-  EXPECT_NE(render(kProtein, {"--radii", "alvarez"}).pixels, render(kProtein).pixels);
+  EXPECT_EQ(render(kProtein, {"--radii", "bondi"}).pixels, usual().pixels);
+  EXPECT_NE(render(kProtein, {"--radii", "alvarez"}).pixels, usual().pixels);
   const auto covered = [this](std::vector<std::string> more) {
     more.insert(more.end(), {"--representation", "ball_and_stick", "--size", "160x120"});
     return render("adrenaline.pdb", more).covered();
@@ -147,26 +147,26 @@ TEST_F(RenderOption, orientAndRotateTurn) {
     return render(kProtein, more).pixels;
   };
   EXPECT_EQ(pixels({"--orient", "principal"}), pixels({}));
-  EXPECT_EQ(pixels({"--orient", "z"}), pixels({"--orient", "1,0,0,0"}));
-  EXPECT_EQ(pixels({"--orient", "z"}), pixels({"--orient", "-2,0,0,0"}));
-  EXPECT_NE(pixels({"--orient", "x"}), pixels({"--orient", "y"}));
-  EXPECT_NE(pixels({"--orient", "x"}), pixels({"--orient", "z"}));
-  EXPECT_NE(pixels({"--orient", "z", "--rotate", "0,0,90"}), pixels({"--orient", "z"}));
+  const std::vector<float> alongX = pixels({"--orient", "x"}), alongZ = pixels({"--orient", "z"});
+  EXPECT_EQ(alongZ, pixels({"--orient", "1,0,0,0"}));
+  EXPECT_EQ(alongZ, pixels({"--orient", "-2,0,0,0"}));
+  EXPECT_NE(alongX, pixels({"--orient", "y"}));
+  EXPECT_NE(alongX, alongZ);
+  EXPECT_NE(pixels({"--orient", "z", "--rotate", "0,0,90"}), alongZ);
   EXPECT_NE(pixels({"--orient", "z", "--rotate", "-30,0,0"}),
             pixels({"--orient", "z", "--rotate", "30,0,0"}));
 }
 
 TEST_F(RenderOption, zoomAndFocusMagnify) {
-  EXPECT_GT(render(kProtein, {"--zoom", "2"}).covered(), render(kProtein).covered());
-  EXPECT_LT(render(kProtein, {"--zoom", "0.5"}).covered(), render(kProtein).covered());
-  EXPECT_GT(render(kProtein, {"--focus", "//A/20-25"}).covered(), render(kProtein).covered());
+  EXPECT_GT(render(kProtein, {"--zoom", "2"}).covered(), usual().covered());
+  EXPECT_LT(render(kProtein, {"--zoom", "0.5"}).covered(), usual().covered());
+  EXPECT_GT(render(kProtein, {"--focus", "//A/20-25"}).covered(), usual().covered());
 }
 
 TEST_F(RenderOption, fovAndOrthographicChangeThePerspective) {
-  const std::vector<float> usual = render(kProtein).pixels;
-  EXPECT_EQ(render(kProtein, {"--fov", "30"}).pixels, usual);
-  EXPECT_NE(render(kProtein, {"--fov", "90"}).pixels, usual);
-  EXPECT_NE(render(kProtein, {"--orthographic"}).pixels, usual);
+  EXPECT_EQ(render(kProtein, {"--fov", "30"}).pixels, usual().pixels);
+  EXPECT_NE(render(kProtein, {"--fov", "90"}).pixels, usual().pixels);
+  EXPECT_NE(render(kProtein, {"--orthographic"}).pixels, usual().pixels);
 }
 
 TEST_F(RenderOption, selectDrawsAPart) {
@@ -373,7 +373,7 @@ TEST_F(RenderOption, backendChoosesTheWayToOpenGl) {
 }
 
 TEST_F(RenderOption, shaderDirReplacesTheShaders) {
-  EXPECT_EQ(render(kProtein, {"--shader-dir", projectFile("shaders")}).pixels, render(kProtein).pixels);
+  EXPECT_EQ(render(kProtein, {"--shader-dir", projectFile("shaders")}).pixels, usual().pixels);
 }
 
 TEST_F(RenderOption, statsHoldWhatWasDoneAndTheCost) {
