@@ -1,5 +1,5 @@
-// Textures hold numbers of balls, or of other primitives, in rows of so many (render/surface/ball_texture.cpp,
-// newton_field.cpp).
+// Textures hold numbers of balls, or of other primitives, in rows of so many
+// (render/surface/ball_texture.cpp, newton_field.cpp).
 const uint kBallsPerRow = 1024u;
 
 // The first texel of a ball that has `texels` of them.

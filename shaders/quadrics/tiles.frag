@@ -15,7 +15,7 @@ layout(std430, binding = 0) readonly restrict buffer Colors {
   uvec4 uColorsIds[];  // of a cylinder's halves: colours, ids; else the first of each counts
 };
 layout(location = 0) uniform ivec4 uGrid;
-layout(location = 1) uniform ivec2 uPart;  // of each list: its first entry, how many
+layout(location = 1) uniform ivec2 uPart;   // of each list: its first entry, how many
 layout(location = 2) uniform float uSlack;  // how much nearer a later entry can be than an earlier one
 
 const float kCylinder = 1.0, kEllipsoid = 2.0;
