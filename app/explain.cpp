@@ -24,7 +24,10 @@ void explainPictures(const RunReport& report, std::string& text) {
                    picture.cylinders,
                    (picture.ellipsoids > 0 ? fmt::format(", {} ellipsoids", picture.ellipsoids) : "") +
                        (picture.metaballs > 0 ? fmt::format(", {} metaballs", picture.metaballs) : "") +
-                       (picture.triangles > 0 ? fmt::format(", {} triangles", picture.triangles) : ""));
+                       (picture.triangles > 0 ? fmt::format(", {} triangles", picture.triangles) : "") +
+                       (picture.copies > 0 ? fmt::format("; {} copies share theirs: {}", picture.copies,
+                                                         bytesText(picture.quadricBytes))
+                                           : ""));
   fmt::format_to(std::back_inserter(text), "{}x{} pixels, {} samples each, {} tile{}\n", report.size.width,
                  report.size.height, report.samples, report.render.tiles,
                  report.render.tiles == 1 ? "" : "s");

@@ -8,6 +8,7 @@
 #include "app/commands.h"
 #include "app/error_panel.h"
 #include "app/label_text.h"
+#include "app/structure_pictures.h"
 #include "core/buffer_sink.h"
 #include "core/error.h"
 #include "core/mesh/surface_mesh.h"
@@ -46,9 +47,12 @@ PictureReport reportOn(const Picture& picture, const Primitives& primitives) {
     report.atoms += counted->atomCount();
     report.bonds += counted->bonds.size();
   }
-  report.spheres = primitives.spheres.size();
-  report.cylinders = primitives.cylinders.size();
-  report.ellipsoids = primitives.ellipsoids.size();
+  const QuadricCounts all = primitives.counts();
+  report.spheres = all.spheres;
+  report.cylinders = all.cylinders;
+  report.ellipsoids = all.ellipsoids;
+  for (const QuadricUnit& unit : primitives.units) report.copies += unit.copies.size();
+  report.quadricBytes = primitives.quadricBytes();
   report.triangles = primitives.mesh.triangles.size();
   for (const MetaballField& field : primitives.surfaces) report.metaballs += field.balls.size();
   return report;
@@ -61,6 +65,17 @@ void addPrimitives(const PictureReport& panel, PictureReport& report) {
   report.ellipsoids += panel.ellipsoids;
   report.triangles += panel.triangles;
   report.metaballs += panel.metaballs;
+  report.copies += panel.copies;
+  report.quadricBytes += panel.quadricBytes;
+}
+
+// Where every copy's quadrics are needed by themselves.
+void requireMemoryForCopies(const PictureReport& picture) {
+  const auto atoms = static_cast<double>(picture.spheres + picture.ellipsoids);
+  const double bytes = atoms * bytesPerAtom(picture.ellipsoids > 0  ? Representation::ellipsoids
+                                            : picture.cylinders > 0 ? Representation::licorice
+                                                                    : Representation::spacefill);
+  requireMemory(picture.input, static_cast<double>(picture.atoms), atoms, bytes);
 }
 
 std::size_t bytesOf(ImageSize size) {
@@ -213,6 +228,7 @@ PictureReport PictureDrawer::render(Picture& picture, RowSink& sink, const Pixel
     settings.trace.environmentMap = environments_.at(options.environmentFile);
   progress_.start(label);
   Renderer& draw = renderer();
+  if (!primitives->units.empty() && draw.drawsCopiesApart(settings)) requireMemoryForCopies(report);
   show(std::move(primitives));
   draw.setLabels(std::move(labels), options.labelColors);
   draw.setPreview(layout.format == PixelFormat::rgba8 ? preview : PicturePreview{});
@@ -299,7 +315,8 @@ void PictureDrawer::show(std::shared_ptr<const Primitives> primitives) {
 
 std::shared_ptr<const Primitives> PictureDrawer::primitivesOf(const Picture& picture) {
   const Timed timed(report_.primitivesSeconds);
-  return std::make_shared<const Primitives>(buildPrimitives(picture.scene, picture.options.lines.groups));
+  return std::make_shared<const Primitives>(
+      buildPrimitives(picture.scene, picture.options.lines.groups, Copies::shared));
 }
 
 Renderer& PictureDrawer::renderer() {

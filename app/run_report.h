@@ -16,7 +16,9 @@ namespace meniscus {
 struct PictureReport {
   std::string input, output;
   std::size_t atoms = 0, bonds = 0;  ///< of the models drawn, before copies are placed
-  std::size_t spheres = 0, cylinders = 0, ellipsoids = 0, metaballs = 0, triangles = 0;
+  std::size_t spheres = 0, cylinders = 0, ellipsoids = 0, metaballs = 0, triangles = 0;  ///< all copies
+  std::size_t copies = 0;          ///< that share their quadrics with others
+  std::uint64_t quadricBytes = 0;  ///< of memory, beside what is made for drawing
   ImageSize size;
   int samples = 0;
 };

@@ -67,6 +67,8 @@ std::string statsAsJson(const RunReport& report) {
                                 {"spheres", picture.spheres},
                                 {"cylinders", picture.cylinders},
                                 {"ellipsoids", picture.ellipsoids},
+                                {"copies", picture.copies},
+                                {"quadricBytes", picture.quadricBytes},
                                 {"metaballs", picture.metaballs},
                                 {"triangles", picture.triangles}});
   json["failures"] = report.failures;

@@ -21,6 +21,7 @@
 #include "core/displacement.h"
 #include "core/error.h"
 #include "core/primitives.h"
+#include "core/ribbon_primitives.h"
 #include "io/structure_reader.h"
 
 namespace meniscus {
@@ -136,19 +137,21 @@ SceneObject StructurePictures::placedObject(std::shared_ptr<const Molecule> mole
 }
 
 void StructurePictures::requireMemoryFor(const Molecules& molecules) const {
-  double atoms = 0, placed = 0;
+  const glm::dvec3 n(options_.replicate);
+  const double lattice = n.x * n.y * n.z;
+  double atoms = 0, placed = 0, bytes = 0;
   for (const auto& molecule : molecules) {
-    const auto count = static_cast<double>(molecule->atomCount());
-    atoms += count;
-    placed += options_.assembly.empty()
-                  ? count
-                  : placedAtomCount(*molecule, {}, placeAssembly(*molecule, options_.assembly));
+    const std::vector<Placement> placements =
+        options_.assembly.empty() ? placeOnce(*molecule) : placeAssembly(*molecule, options_.assembly);
+    atoms += static_cast<double>(molecule->atomCount());
+    placed += lattice * placedAtomCount(*molecule, {}, placements);
+    double most = bytesOfCopies(*molecule, {}, placements, options_.representation, lattice);
+    for (const ShownApart& shown : options_.shown)
+      most = std::max(most, bytesOfCopies(*molecule, {}, placements, shown.representation, lattice));
+    bytes += most;
   }
-  const glm::dvec3 lattice(options_.replicate);
-  placed *= lattice.x * lattice.y * lattice.z;
-  double bytes = bytesPerAtom(options_.representation);
-  for (const ShownApart& shown : options_.shown) bytes = std::max(bytes, bytesPerAtom(shown.representation));
-  requireMemory(file_, atoms, placed, bytes * placed);
+  requireMemory(file_, atoms, placed, bytes);
+  requireIds(file_, atoms, placed);
 }
 
 bool StructurePictures::draws(Representation representation) const {
@@ -218,19 +221,17 @@ void StructurePictures::throwMatchesNothing(const char* option, const std::strin
 // One camera for all models of a file, so that they can be compared and make a film; it looks as suits the
 // first.
 Camera StructurePictures::cameraFor(const std::vector<Objects>& models) const {
-  std::vector<FitSphere> spheres, first;
-  const auto add = [](const std::vector<FitSphere>& some, std::vector<FitSphere>& to) {
-    to.insert(to.end(), some.begin(), some.end());
-  };
+  FitSpheres spheres, first;
   for (const Objects& objects : models) {
     for (const SceneObject& object : objects) {
-      std::vector<FitSphere> all;
-      if (options_.focus.empty() || &objects == &models.front()) all = fitSpheres(object);
-      if (&objects == &models.front()) add(all, first);
+      const bool ofFirst = &objects == &models.front();
+      FitSpheres all;
+      if (options_.focus.empty() || ofFirst) addFitSpheres(object, {}, all);
+      if (ofFirst) first.add(all);
       if (options_.focus.empty()) {
-        add(all, spheres);
+        spheres.add(all);
       } else if (const auto atoms = selectAtoms(*object.molecule, options_.focus); !atoms.empty()) {
-        add(fitSpheres(object, atoms), spheres);
+        addFitSpheres(object, atoms, spheres);
       }
     }
   }
@@ -291,7 +292,7 @@ Picture errorPanel(const Picture& first) {
 Camera cameraOfPanels(const Preparation& all, const RenderOptions& options, ImageSize size) {
   Camera camera = all.pictures.front().scene.camera;
   if (!options.focus.empty()) return camera;
-  std::vector<FitSphere> spheres;
+  FitSpheres spheres;
   for (const Picture& picture : all.pictures)
     for (const Picture& panel : picture.panels) addFitSpheres(panel.scene.objects, spheres);
   return withViewpoint(fitted(camera, size, spheres), options);
@@ -357,7 +358,9 @@ Label labelOf(std::shared_ptr<const Molecule> molecule, const std::vector<Placem
   labelled.molecule = std::move(molecule);
   labelled.placements = placements;
   labelled.atoms = std::move(atoms);
-  const BoundingSphere bounds = boundsOf(fitSpheres(labelled));
+  FitSpheres spheres;
+  addFitSpheres(labelled, {}, spheres);
+  const BoundingSphere bounds = boundsOf(spheres);
   return {text, bounds.center, bounds.radius};
 }
 
@@ -381,6 +384,22 @@ double bytesPerAtom(Representation representation) {
   return representation == Representation::surface ? 130 : 120;
 }
 
+double bytesOfCopies(const Molecule& molecule, const std::vector<std::uint32_t>& atoms,
+                     const std::vector<Placement>& placements, Representation representation,
+                     double lattice) {
+  const double placed = lattice * placedAtomCount(molecule, atoms, placements);
+  const double apart = bytesPerAtom(representation) * placed;
+  if (representation == Representation::surface || followsBackbone(representation)) return apart;
+  std::vector<Placement> once;
+  for (const std::vector<std::uint32_t>& alike : alikePlacements(placements))
+    once.push_back(placements[alike.front()]);
+  // The place itself, which several lists repeat, and the clusters in it; ids of lines.
+  constexpr double kPerCopy = 1000, kPerPlacedAtom = 10;
+  return std::min(apart, bytesPerAtom(representation) * placedAtomCount(molecule, atoms, once) +
+                             kPerCopy * lattice * static_cast<double>(placements.size()) +
+                             kPerPlacedAtom * placed);
+}
+
 // Copies are cheap to ask for, and a system short of memory ends the process without a word.
 void requireMemory(const std::string& file, double atoms, double placed, double bytes) {
   const double available = static_cast<double>(physicalMemoryBytes());
@@ -389,6 +408,15 @@ void requireMemory(const std::string& file, double atoms, double placed, double 
       fmt::format("'{}': {:.0f} copies of {:.0f} atoms take {:.0f} GB of memory, more than there is; draw "
                   "fewer copies or a part (--select)",
                   file, placed / atoms, atoms, bytes / 1e9));
+}
+
+void requireIds(const std::string& file, double atoms, double placed) {
+  constexpr double kMost = 4294967294;
+  if (placed <= kMost) return;
+  throw InputError(fmt::format(
+      "'{}': {:.0f} copies of {:.0f} atoms are more than the 4,294,967,294 atoms that can be told "
+      "apart; draw fewer copies or a part (--select)",
+      file, placed / atoms, atoms));
 }
 
 Preparation structurePictures(const std::string& file, std::string bytes, const RenderOptions& options) {

@@ -25,9 +25,17 @@ double placedAtomCount(const Molecule& molecule, const std::vector<std::uint32_t
 /// the others add what their primitives take.
 double bytesPerAtom(Representation representation);
 
+/// What these atoms (none = all) in these placements, `lattice` times each, take of memory at most [bytes].
+/// Copies of what is drawn atom by atom share it, while it is cast from tiles.
+double bytesOfCopies(const Molecule& molecule, const std::vector<std::uint32_t>& atoms,
+                     const std::vector<Placement>& placements, Representation representation,
+                     double lattice = 1);
+
 /// Throws InputError naming `file` if `placed` atoms, copies of `atoms`, which take `bytes` all together, do
 /// not fit into memory.
 void requireMemory(const std::string& file, double atoms, double placed, double bytes);
+/// Likewise if they are more than there are ids.
+void requireIds(const std::string& file, double atoms, double placed);
 
 /// The pictures of a file: one, or one per model. `bytes` are the file's. Throws InputError and UsageError.
 Preparation structurePictures(const std::string& file, std::string bytes, const RenderOptions& options);

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <glm/common.hpp>
 #include <glm/ext/matrix_transform.hpp>
 #include <limits>
+#include <map>
 #include <string>
 
 #include "core/error.h"
@@ -93,6 +95,24 @@ std::vector<Placement> replicate(const Molecule& molecule, const std::vector<Pla
     }
   }
   return lattice;
+}
+
+std::vector<std::vector<std::uint32_t>> alikePlacements(const std::vector<Placement>& placements) {
+  using Ranges = std::vector<IndexRange>;
+  const auto before = [](const Ranges* a, const Ranges* b) {
+    return std::lexicographical_compare(a->begin(), a->end(), b->begin(), b->end(),
+                                        [](const IndexRange& x, const IndexRange& y) {
+                                          return x.first != y.first ? x.first < y.first : x.count < y.count;
+                                        });
+  };
+  std::map<const Ranges*, std::size_t, decltype(before)> known(before);
+  std::vector<std::vector<std::uint32_t>> out;
+  for (std::uint32_t i = 0; i < placements.size(); ++i) {
+    const auto [place, isNew] = known.try_emplace(&placements[i].residues, out.size());
+    if (isNew) out.emplace_back();
+    out[place->second].push_back(i);
+  }
+  return out;
 }
 
 }  // namespace meniscus

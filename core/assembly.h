@@ -1,6 +1,7 @@
 #pragma once
 // Many copies of one molecule: biological assemblies and lattices.
 
+#include <cstdint>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <vector>
@@ -26,5 +27,8 @@ std::vector<Placement> placeAssembly(const Molecule& molecule, const std::string
 /// centred on the original.
 std::vector<Placement> replicate(const Molecule& molecule, const std::vector<Placement>& placements,
                                  glm::ivec3 n);
+
+/// Indices of placements by the residues that they hold, in the order of the first of each.
+std::vector<std::vector<std::uint32_t>> alikePlacements(const std::vector<Placement>& placements);
 
 }  // namespace meniscus

@@ -12,13 +12,13 @@ namespace meniscus {
 namespace {
 
 // An axis has no sign of its own: take the one along which the distribution has its longer tail.
-glm::dvec3 withSign(glm::dvec3 axis, std::span<const FitSphere> spheres, glm::dvec3 mean) {
+glm::dvec3 withSign(glm::dvec3 axis, const FitSpheres& spheres, glm::dvec3 mean) {
   double third = 0, scale = 0;
-  for (const FitSphere& s : spheres) {
+  spheres.forEach([&](const FitSphere& s) {
     const double x = glm::dot(s.center - mean, axis);
     third += x * x * x;
     scale += std::abs(x * x * x);
-  }
+  });
   if (std::abs(third) > 1e-6 * scale) return third > 0 ? axis : -axis;
   // Symmetric: the largest component becomes positive.
   const glm::dvec3 a = glm::abs(axis);
@@ -33,16 +33,56 @@ glm::dquat fromAxes(glm::dvec3 right, glm::dvec3 up) {
 
 }  // namespace
 
-glm::dquat principalAxes(std::span<const FitSphere> spheres, bool tall) {
-  if (spheres.size() < 2) return {1, 0, 0, 0};
-  glm::dvec3 mean(0.0);
-  for (const FitSphere& s : spheres) mean += s.center;
-  mean /= static_cast<double>(spheres.size());
-  glm::dmat3 covariance(0.0);
+FitSphere FitGroup::ballIn(const glm::dmat4& place) const {
+  // Matrices in files need not be rigid: no vector grows more than by the root of the largest sum in a row.
+  const glm::dmat3 turn(place), square = glm::transpose(turn) * turn;
+  double most = 1;
+  for (int k = 0; k < 3; ++k)
+    most = std::max(most, std::abs(square[k][0]) + std::abs(square[k][1]) + std::abs(square[k][2]));
+  return {placed(ball, place).center, ball.radius * std::sqrt(most) * (1 + 1e-9)};
+}
+
+void FitSpheres::add(std::vector<FitSphere> spheres, std::vector<glm::dmat4> places) {
+  if (spheres.empty() || places.empty()) return;
+  glm::dvec3 low = spheres.front().center, high = low;
   for (const FitSphere& s : spheres) {
+    low = glm::min(low, s.center);
+    high = glm::max(high, s.center);
+  }
+  FitSphere ball{(low + high) * 0.5, 0};
+  for (const FitSphere& s : spheres)
+    ball.radius = std::max(ball.radius, glm::distance(s.center, ball.center) + s.radius);
+  groups_.push_back({std::move(spheres), std::move(places), ball});
+}
+
+void FitSpheres::add(const FitSpheres& others) {
+  groups_.insert(groups_.end(), others.groups_.begin(), others.groups_.end());
+}
+
+std::size_t FitSpheres::size() const {
+  std::size_t count = 0;
+  for (const FitGroup& group : groups_) count += group.spheres.size() * group.places.size();
+  return count;
+}
+
+FitSphere FitSpheres::front() const {
+  const FitGroup& group = groups_.front();
+  return FitGroup::placed(group.spheres.front(), group.places.front());
+}
+
+// Sums are taken one sphere after the other: the axes of a capsid, whose moments are all the same, are those
+// of their last digits.
+glm::dquat principalAxes(const FitSpheres& spheres, bool tall) {
+  const std::size_t count = spheres.size();
+  if (count < 2) return {1, 0, 0, 0};
+  glm::dvec3 mean(0.0);
+  spheres.forEach([&](const FitSphere& s) { mean += s.center; });
+  mean /= static_cast<double>(count);
+  glm::dmat3 covariance(0.0);
+  spheres.forEach([&](const FitSphere& s) {
     const glm::dvec3 d = s.center - mean;
     covariance += glm::outerProduct(d, d);
-  }
+  });
   const SymmetricEigen eigen = symmetricEigen(covariance);
   std::array<int, 3> order{0, 1, 2};
   std::stable_sort(order.begin(), order.end(),
@@ -68,7 +108,7 @@ glm::dquat rotatedBy(const glm::dquat& orientation, glm::dvec3 degrees) {
   return glm::normalize(z * y * x * orientation);
 }
 
-Camera fitted(Camera camera, ImageSize size, std::span<const FitSphere> spheres, double margin) {
+Camera fitted(Camera camera, ImageSize size, const FitSpheres& spheres, double margin) {
   if (spheres.empty()) return camera;
   const glm::dmat3 rotation = glm::mat3_cast(glm::normalize(camera.orientation));
   const bool perspective = camera.projection == Projection::perspective;
@@ -82,15 +122,24 @@ Camera fitted(Camera camera, ImageSize size, std::span<const FitSphere> spheres,
   constexpr double kNone = -std::numeric_limits<double>::infinity();
   double right = kNone, left = kNone, top = kNone, bottom = kNone, front = kNone, back = kNone;
   const glm::dvec3 base = spheres.front().center;  // keeps digits for molecules far from the origin
-  for (const FitSphere& s : spheres) {
+  // Beyond its point in the direction of each plane.
+  const auto reach = [&](const FitSphere& s, auto f) {
     const glm::dvec3 p = rotation * (s.center - base);
-    right = std::max(right, p.x + leanX * p.z + reachX * s.radius);
-    left = std::max(left, -p.x + leanX * p.z + reachX * s.radius);
-    top = std::max(top, p.y + leanY * p.z + reachY * s.radius);
-    bottom = std::max(bottom, -p.y + leanY * p.z + reachY * s.radius);
-    front = std::max(front, p.z + s.radius);
-    back = std::max(back, s.radius - p.z);
-  }
+    return f(right, p.x + leanX * p.z + reachX * s.radius) &&
+           f(left, -p.x + leanX * p.z + reachX * s.radius) && f(top, p.y + leanY * p.z + reachY * s.radius) &&
+           f(bottom, -p.y + leanY * p.z + reachY * s.radius) && f(front, p.z + s.radius) &&
+           f(back, s.radius - p.z);
+  };
+  spheres.forEach(
+      [&](const FitSphere& ball) {
+        return reach(ball, [](double most, double here) { return here <= most; });
+      },
+      [&](const FitSphere& s) {
+        reach(s, [](double& most, double here) {
+          most = std::max(most, here);
+          return true;
+        });
+      });
   // Opposite planes of the frustum touch the spheres when the eye is half-way between them.
   const glm::dvec3 middle((right - left) * 0.5, (top - bottom) * 0.5, (front - back) * 0.5);
   double distance = std::max((right + left) * 0.5 / tanX, (top + bottom) * 0.5 / tanY);

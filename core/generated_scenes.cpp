@@ -396,7 +396,7 @@ std::shared_ptr<Primitives> packedBalls(std::size_t count, std::uint64_t seed) {
 View viewOfAll(const Primitives& primitives, ImageSize size, double fovY, Projection projection,
                const glm::dquat& orientation) {
   const BoundingSphere bounds = primitives.bounds();
-  const FitSphere whole[] = {{bounds.center, bounds.radius}};
+  const std::vector<FitSphere> whole{{bounds.center, bounds.radius}};
   Camera camera;
   camera.projection = projection;
   camera.fovY = fovY;

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
 #include <limits>
+#include <utility>
 
 #include "core/atom_colors.h"
 #include "core/displacement.h"
@@ -104,45 +106,83 @@ void forEachAtom(const SceneObject& object, const Placement& placement, F f) {
   }
 }
 
-// Centre of the box around everything that is drawn.
-glm::dvec3 middleOf(const Scene& scene) {
-  glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
-  for (const SceneObject& object : scene.objects) {
-    for (const Placement& placement : object.placements) {
-      forEachAtom(object, placement, [&](std::uint32_t atom) {
-        const glm::dvec3 p = placed(placement, object.molecule->positions[atom]);
-        low = glm::min(low, p);
-        high = glm::max(high, p);
-      });
-    }
+struct PointBox {
+  glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
+
+  void grow(const glm::dvec3& p) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
   }
-  return low.x <= high.x ? (low + high) * 0.5 : glm::dvec3(0.0);
+  bool empty() const { return !(low.x <= high.x); }
+  glm::dvec3 middle() const { return (low + high) * 0.5; }
+};
+
+// Of the atoms that a placement holds, where the molecule is.
+PointBox boxOf(const SceneObject& object, const Placement& placement) {
+  PointBox box;
+  forEachAtom(object, placement, [&](std::uint32_t atom) { box.grow(object.molecule->positions[atom]); });
+  return box;
 }
 
-// Adds one placement of an object; `ids` is scratch: the id of each atom drawn by this placement.
-void addPlacement(const SceneObject& object, const Placement& placement, const std::vector<Rgb>& colors,
-                  const Ellipsoids& ellipsoids, std::vector<std::uint32_t>& ids, std::uint32_t firstId,
-                  Primitives& out) {
+// Centre of the box around everything that is drawn.
+glm::dvec3 middleOf(const Scene& scene) {
+  PointBox all;
+  for (const SceneObject& object : scene.objects) {
+    for (const std::vector<std::uint32_t>& alike : alikePlacements(object.placements)) {
+      const PointBox here = boxOf(object, object.placements[alike.front()]);
+      if (here.empty()) continue;
+      const glm::dvec3 half = (here.high - here.low) * 0.5;
+      for (const std::uint32_t i : alike) {
+        const Placement& placement = object.placements[i];
+        // The box, turned with its atoms, and a box around that: most placements add nothing.
+        const glm::dvec3 middle = placed(placement, here.middle());
+        glm::dvec3 reach(0.0);
+        for (int k = 0; k < 3; ++k) reach += glm::abs(glm::dvec3(placement.transform[k])) * half[k];
+        if (glm::all(glm::lessThanEqual(all.low, middle - reach)) &&
+            glm::all(glm::greaterThanEqual(all.high, middle + reach)))
+          continue;
+        forEachAtom(object, placement, [&](std::uint32_t atom) {
+          all.grow(placed(placement, object.molecule->positions[atom]));
+        });
+      }
+    }
+  }
+  return all.empty() ? glm::dvec3(0.0) : all.middle();
+}
+
+// Whether an object's atoms are drawn one by one, as quadrics.
+bool drawsQuadrics(Representation representation) {
+  return representation != Representation::surface && !followsBackbone(representation);
+}
+
+// How the atoms of an object look, wherever it stands.
+struct Look {
+  std::vector<Rgb> colors;
+  Ellipsoids ellipsoids;
+
+  explicit Look(const SceneObject& object)
+      : colors(object.colors.empty() ? colorAtoms(*object.molecule, object.coloring) : object.colors),
+        ellipsoids(object) {}
+};
+
+// Adds one placement of an object, relative to `origin`.
+void addQuadrics(const SceneObject& object, const Placement& placement, const Look& look,
+                 std::uint32_t firstId, const glm::dvec3& origin, Quadrics& out) {
   const Molecule& molecule = *object.molecule;
   const bool bonds = needsBonds(object.representation);
   const glm::dmat3 turn(placement.transform);
   std::vector<glm::vec3> centers(bonds ? molecule.atomCount() : 0);
-  if (bonds) ids.assign(molecule.atomCount(), kNotDrawn);
+  std::vector<std::uint32_t> ids(centers.size(), kNotDrawn);
 
   forEachAtom(object, placement, [&](std::uint32_t atom) {
-    const glm::vec3 center(placed(placement, molecule.positions[atom]) - out.origin);
+    const glm::vec3 center(placed(placement, molecule.positions[atom]) - origin);
     const std::uint32_t id = firstId + atom;
-    if (object.representation == Representation::surface) {
-      const float support = drawnRadius(object, ellipsoids, atom) * static_cast<float>(object.surface.blend);
-      out.surfaces.back().balls.push_back({center, support, 1.0f, colors[atom], id});
-      return;
-    }
-    if (object.representation == Representation::ellipsoids && !ellipsoids.isSphere(atom)) {
-      const glm::dmat3 axes = turn * ellipsoids.axes(atom);
+    if (object.representation == Representation::ellipsoids && !look.ellipsoids.isSphere(atom)) {
+      const glm::dmat3 axes = turn * look.ellipsoids.axes(atom);
       out.ellipsoids.push_back({center, static_cast<float>(glm::length(axes[2])), glm::vec3(axes[0]),
-                                glm::vec3(axes[1]), colors[atom], id});
+                                glm::vec3(axes[1]), look.colors[atom], id});
     } else {
-      out.spheres.push_back({center, drawnRadius(object, ellipsoids, atom), colors[atom], id});
+      out.spheres.push_back({center, drawnRadius(object, look.ellipsoids, atom), look.colors[atom], id});
     }
     if (bonds) {
       centers[atom] = center;
@@ -153,8 +193,57 @@ void addPlacement(const SceneObject& object, const Placement& placement, const s
   const float radius = bondRadius(object);
   for (const Bond& bond : molecule.bonds) {
     if (ids[bond.a] == kNotDrawn || ids[bond.b] == kNotDrawn) continue;
-    out.cylinders.push_back(
-        {centers[bond.a], radius, centers[bond.b], colors[bond.a], colors[bond.b], ids[bond.a], ids[bond.b]});
+    out.cylinders.push_back({centers[bond.a], radius, centers[bond.b], look.colors[bond.a],
+                             look.colors[bond.b], ids[bond.a], ids[bond.b]});
+  }
+}
+
+void addBalls(const SceneObject& object, const Placement& placement, const Look& look, std::uint32_t firstId,
+              const glm::dvec3& origin, MetaballField& out) {
+  forEachAtom(object, placement, [&](std::uint32_t atom) {
+    const glm::vec3 center(placed(placement, object.molecule->positions[atom]) - origin);
+    const float support =
+        drawnRadius(object, look.ellipsoids, atom) * static_cast<float>(object.surface.blend);
+    out.balls.push_back({center, support, 1.0f, look.colors[atom], firstId + atom});
+  });
+}
+
+// A unit of fewer quadrics takes hardly more memory in every place than its copy does.
+constexpr std::size_t kLeastUnit = 64;
+// The most by which the columns of a placement's matrix may differ from unit length and right angles [1]:
+// matrices in files are rounded to six digits.
+constexpr double kMostSkew = 1e-5;
+
+bool isRigid(const glm::dmat4& transform) {
+  const glm::dmat3 turn(transform), product = glm::transpose(turn) * turn;
+  for (int column = 0; column < 3; ++column) {
+    for (int row = 0; row < 3; ++row)
+      if (!(std::abs(product[column][row] - (row == column ? 1.0 : 0.0)) <= kMostSkew)) return false;
+  }
+  return true;
+}
+
+// Adds all placements of an object; those of the same residues as units, where that is worth it.
+void addShared(const SceneObject& object, const Look& look, std::uint32_t firstId, Primitives& out) {
+  const auto atoms = static_cast<std::uint32_t>(object.molecule->atomCount());
+  for (const std::vector<std::uint32_t>& alike : alikePlacements(object.placements)) {
+    Placement once{glm::dmat4(1.0), object.placements[alike.front()].residues};
+    const PointBox box = boxOf(object, once);
+    if (box.empty()) continue;
+    const glm::dvec3 middle = box.middle();
+    QuadricUnit unit;
+    if (alike.size() > 1) addQuadrics(object, once, look, firstId, middle, unit);
+    const bool worthIt = unit.quadricCount() >= kLeastUnit;
+    for (const std::uint32_t i : alike) {
+      const Placement& placement = object.placements[i];
+      if (worthIt && isRigid(placement.transform)) {
+        unit.copies.push_back(
+            {{glm::dmat3(placement.transform), placed(placement, middle) - out.origin}, i * atoms});
+      } else {
+        addQuadrics(object, placement, look, firstId + i * atoms, out.origin, out);
+      }
+    }
+    if (!unit.copies.empty()) out.units.push_back(std::move(unit));
   }
 }
 
@@ -199,6 +288,18 @@ void addGroups(const Molecule& molecule, LineGroups groups, std::uint32_t& nextG
   nextGroup += static_cast<std::uint32_t>(chains ? molecule.chains.size() : molecule.residues.size());
 }
 
+// Spheres of all placements.
+std::size_t countSpheres(const Scene& scene) {
+  std::size_t count = 0;
+  for (const SceneObject& object : scene.objects) {
+    if (!drawsQuadrics(object.representation) || object.representation == Representation::ellipsoids)
+      continue;
+    for (const Placement& placement : object.placements)
+      forEachAtom(object, placement, [&](std::uint32_t) { ++count; });
+  }
+  return count;
+}
+
 }  // namespace
 
 std::size_t countIds(const Scene& scene) {
@@ -231,114 +332,54 @@ bool needsBonds(Representation representation) {
          !followsBackbone(representation);
 }
 
-Primitives buildPrimitives(const Scene& scene, LineGroups groups) {
+Primitives buildPrimitives(const Scene& scene, LineGroups groups, Copies copies) {
   Primitives out;
   out.origin = middleOf(scene);
-  std::size_t spheres = 0;
-  for (const SceneObject& object : scene.objects) {
-    for (const Placement& placement : object.placements) {
-      if (object.representation != Representation::ellipsoids &&
-          object.representation != Representation::surface && !followsBackbone(object.representation))
-        forEachAtom(object, placement, [&](std::uint32_t) { ++spheres; });
-    }
-  }
   if (countIds(scene) > std::numeric_limits<std::uint32_t>::max()) {
     throw InputError(
         "the scene has more than 4,294,967,294 atoms; draw a part of it (--select, fewer copies)");
   }
-  out.spheres.reserve(spheres);
-
+  if (copies == Copies::apart) out.spheres.reserve(countSpheres(scene));
   const bool grouped = groups == LineGroups::residues || groups == LineGroups::chains;
   if (grouped) out.groups.assign(1, 0);
   std::uint32_t firstId = 1, nextId = 1, nextGroup = 1;
-  std::vector<std::uint32_t> scratch;
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const SceneObject& object = scene.objects[i];
-    const std::vector<Rgb> colors =
-        object.colors.empty() ? colorAtoms(*object.molecule, object.coloring) : object.colors;
-    const Ellipsoids ellipsoids(object);
+    const Look look(object);
     const BackboneObject backbone(object);
     const auto atoms = static_cast<std::uint32_t>(object.molecule->atomCount());
     const bool shared = sharesIds(scene, i);
     if (!shared) firstId = nextId;
     if (object.representation == Representation::surface) out.surfaces.push_back(emptyField(object.surface));
-    std::uint32_t id = firstId;
+    const bool asUnits = copies == Copies::shared && drawsQuadrics(object.representation);
+    if (asUnits) addShared(object, look, firstId, out);
+    nextId = firstId;
     for (const Placement& placement : object.placements) {
       if (followsBackbone(object.representation)) {
-        backbone.addPlacement(placement, colors, id, out);
-      } else {
-        addPlacement(object, placement, colors, ellipsoids, scratch, id, out);
+        backbone.addPlacement(placement, look.colors, nextId, out);
+      } else if (object.representation == Representation::surface) {
+        addBalls(object, placement, look, nextId, out.origin, out.surfaces.back());
+      } else if (!asUnits) {
+        addQuadrics(object, placement, look, nextId, out.origin, out);
       }
       if (grouped && !shared) addGroups(*object.molecule, groups, nextGroup, out.groups);
-      id += atoms;
+      nextId += atoms;
     }
-    nextId = id;
     if (!out.surfaces.empty() && out.surfaces.back().balls.empty()) out.surfaces.pop_back();
   }
   for (const DashedLine& line : scene.dashes) {
     if (grouped) out.groups.push_back(nextGroup++);
     addDashes(line, nextId++, out);
   }
+  const QuadricCounts all = out.counts();
+  if (all.spheres + all.cylinders + all.ellipsoids > std::numeric_limits<std::uint32_t>::max()) {
+    throw InputError(
+        "the scene has more than 4,294,967,295 atoms and bonds; draw a part of it (--select, fewer copies)");
+  }
   return out;
 }
 
-double Primitives::thinnestRadius() const {
-  if (!mesh.empty()) return 0;
-  float least = std::numeric_limits<float>::infinity();
-  for (const SpherePrimitive& s : spheres) least = std::min(least, s.radius);
-  for (const CylinderPrimitive& c : cylinders) least = std::min(least, c.radius);
-  for (const EllipsoidPrimitive& e : ellipsoids) least = std::min(least, e.shortest);
-  for (const MetaballField& field : surfaces)
-    for (const Metaball& b : field.balls) least = std::min(least, 0.5f * b.support);
-  return static_cast<double>(least);
-}
-
-BoundingSphere Primitives::bounds() const {
-  if (empty()) return {origin, 0.0};
-  glm::vec3 low(std::numeric_limits<float>::infinity()), high(-low);
-  const auto grow = [&](glm::vec3 p, float r) {
-    low = glm::min(low, p - r);
-    high = glm::max(high, p + r);
-  };
-  for (const SpherePrimitive& s : spheres) grow(s.center, s.radius);
-  for (const CylinderPrimitive& c : cylinders) {
-    grow(c.a, c.radius);
-    grow(c.b, c.radius);
-  }
-  for (const EllipsoidPrimitive& e : ellipsoids) grow(e.center, glm::length(e.axisA));
-  for (const TriangleVertex& v : mesh.vertices) grow(v.position, 0);
-  for (const MetaballField& field : surfaces)
-    for (const Metaball& b : field.balls) grow(b.center, b.support);
-  const glm::vec3 middle = (low + high) * 0.5f;
-  double radius = 0;
-  for (const SpherePrimitive& s : spheres) {
-    radius = std::max(radius, static_cast<double>(glm::length(s.center - middle) + s.radius));
-  }
-  for (const CylinderPrimitive& c : cylinders) {
-    const float reach = std::max(glm::length(c.a - middle), glm::length(c.b - middle));
-    radius = std::max(radius, static_cast<double>(reach + c.radius));
-  }
-  for (const EllipsoidPrimitive& e : ellipsoids) {
-    radius = std::max(radius, static_cast<double>(glm::length(e.center - middle) + glm::length(e.axisA)));
-  }
-  for (const TriangleVertex& v : mesh.vertices)
-    radius = std::max(radius, static_cast<double>(glm::length(v.position - middle)));
-  for (const MetaballField& field : surfaces) {
-    for (const Metaball& b : field.balls)
-      radius = std::max(radius, static_cast<double>(glm::length(b.center - middle) + b.support));
-  }
-  return {origin + glm::dvec3(middle), radius};
-}
-
-void addFitSpheres(std::span<const SceneObject> objects, std::vector<FitSphere>& out) {
-  for (const SceneObject& object : objects) {
-    const std::vector<FitSphere> some = fitSpheres(object);
-    out.insert(out.end(), some.begin(), some.end());
-  }
-}
-
-std::vector<FitSphere> fitSpheres(const SceneObject& object, const std::vector<std::uint32_t>& atoms) {
-  std::vector<FitSphere> out;
+void addFitSpheres(const SceneObject& object, const std::vector<std::uint32_t>& atoms, FitSpheres& out) {
   const Ellipsoids ellipsoids(object);
   const bool ribbons = followsBackbone(object.representation);
   const std::vector<double> reach = ribbons ? backboneReach(object) : std::vector<double>();
@@ -347,13 +388,29 @@ std::vector<FitSphere> fitSpheres(const SceneObject& object, const std::vector<s
     chosen.resize(object.molecule->atomCount());
     for (const std::uint32_t atom : atoms) chosen[atom] = true;
   }
-  for (const Placement& placement : object.placements) {
-    forEachAtom(object, placement, [&](std::uint32_t atom) {
+  for (const std::vector<std::uint32_t>& alike : alikePlacements(object.placements)) {
+    std::vector<FitSphere> spheres;
+    forEachAtom(object, object.placements[alike.front()], [&](std::uint32_t atom) {
       if (!chosen.empty() && !chosen[atom]) return;
       const double radius = ribbons ? reach[atom] : fitRadius(object, ellipsoids, atom);
-      if (radius >= 0) out.push_back({placed(placement, object.molecule->positions[atom]), radius});
+      if (radius >= 0) spheres.push_back({object.molecule->positions[atom], radius});
     });
+    std::vector<glm::dmat4> places;
+    for (const std::uint32_t i : alike) places.push_back(object.placements[i].transform);
+    out.add(std::move(spheres), std::move(places));
   }
+}
+
+void addFitSpheres(std::span<const SceneObject> objects, FitSpheres& out) {
+  for (const SceneObject& object : objects) addFitSpheres(object, {}, out);
+}
+
+std::vector<FitSphere> fitSpheres(const SceneObject& object, const std::vector<std::uint32_t>& atoms) {
+  FitSpheres spheres;
+  addFitSpheres(object, atoms, spheres);
+  std::vector<FitSphere> out;
+  out.reserve(spheres.size());
+  spheres.forEach([&](const FitSphere& s) { out.push_back(s); });
   return out;
 }
 

@@ -175,7 +175,8 @@ struct Renderer::Impl {
   std::shared_ptr<std::vector<float>> shadowHeights;
   std::vector<std::byte> band;
   std::shared_ptr<const Primitives> primitives = std::make_shared<Primitives>();
-  std::shared_ptr<const Primitives> withoutSurfaces;  // the same; made when it is wanted first
+  // The same; made when they are wanted first.
+  std::shared_ptr<const Primitives> copiesApart, withoutSurfaces;
   RenderStats stats;
   double forgottenCompileMs = 0;
 
@@ -193,10 +194,20 @@ struct Renderer::Impl {
     stats.omissions.clear();  // of an earlier picture
     Stopwatch watch(stats.uploadMs);
     quadricChoice = chooseQuadrics(method);
-    if (quadricChoice.method == QuadricMethod::splat) quadrics.upload(*primitives);
+    if (quadricChoice.method == QuadricMethod::splat) quadrics.upload(*apart());
     triangles.upload(primitives->mesh);
     surfaces.prepare(primitives, surface);
     if (!viewUniforms.object) viewUniforms = gl::Buffer::updatable(sizeof(f32::ViewBlock));
+  }
+
+  // For what draws no copies: all that is not cast from tiles.
+  const std::shared_ptr<const Primitives>& apart() {
+    if (!copiesApart) {
+      copiesApart = primitives->units.empty()
+                        ? primitives
+                        : std::make_shared<const Primitives>(meniscus::copiesApart(*primitives));
+    }
+    return copiesApart;
   }
 
   f32::ViewBlock setView(const View& view, const Tile& tile, glm::vec2 sampleShift) {
@@ -231,10 +242,11 @@ struct Renderer::Impl {
       graph.leaveOut("pass " + prefix + "tiles", "quadrics are splatted: " + quadricChoice.reason);
       return;
     }
-    for (const auto& [name, none] : {std::pair{"spheres", primitives->spheres.empty()},
-                                     std::pair{"cylinders", primitives->cylinders.empty()},
-                                     std::pair{"ellipsoids", primitives->ellipsoids.empty()}}) {
-      graph.leaveOut("pass " + prefix + name, none ? "the scene has none" : quadricChoice.reason);
+    const QuadricCounts all = primitives->counts();
+    for (const auto& [name, count] :
+         {std::pair{"spheres", all.spheres}, std::pair{"cylinders", all.cylinders},
+          std::pair{"ellipsoids", all.ellipsoids}}) {
+      graph.leaveOut("pass " + prefix + name, count == 0 ? "the scene has none" : quadricChoice.reason);
     }
   }
 
@@ -332,6 +344,7 @@ Renderer::~Renderer() = default;
 void Renderer::setPrimitives(std::shared_ptr<const Primitives> primitives) {
   requireFinite(*primitives);
   impl_->primitives = std::move(primitives);
+  impl_->copiesApart.reset();
   impl_->withoutSurfaces.reset();
   impl_->surfaces.takeStats(impl_->stats.surfaces);
   impl_->surfaces.clear();
@@ -339,12 +352,17 @@ void Renderer::setPrimitives(std::shared_ptr<const Primitives> primitives) {
   impl_->triangles.clear();
   impl_->tileQuadrics.setPrimitives(impl_->primitives);
   impl_->glslTileQuadrics.setPrimitives(impl_->primitives);
-  impl_->tracedLight.setPrimitives(impl_->primitives);
+  impl_->tracedLight.setPrimitives(nullptr);
   impl_->occlusionBuffers.clear();
   impl_->silhouetteUniforms.clearGroups();
   impl_->keptShadowMap = {};
   impl_->extent.reset();
   impl_->pool.trim();
+}
+
+bool Renderer::drawsCopiesApart(const RenderSettings& settings) const {
+  return settings.occlusion.on || settings.trace.any() ||
+         chooseQuadrics(settings.quadrics).method == QuadricMethod::splat;
 }
 
 void Renderer::setLabels(std::vector<LabelSprite> labels, const LabelColors& colors) {
@@ -418,12 +436,12 @@ void Renderer::Impl::drawOcclusion(Frame& frame, const std::function<void(double
   {
     Stopwatch watch(spent);
     if (frame.translucent && !withoutSurfaces) {
-      auto opaque = std::make_shared<Primitives>(*primitives);
+      auto opaque = std::make_shared<Primitives>(*apart());
       opaque->surfaces = {};
       withoutSurfaces = std::move(opaque);
     }
     // What is translucent occludes nothing.
-    const Primitives& occluders = frame.translucent ? *withoutSurfaces : *primitives;
+    const Primitives& occluders = frame.translucent ? *withoutSurfaces : *apart();
     occlusionBuffers.set(frame.view, drawOcclusionMaps(occluders, frame.view, frame.settings.occlusion, [&] {
                            if (progress) progress(0);
                          }));
@@ -538,6 +556,7 @@ void Renderer::renderPicture(const View& view, const Lighting& lighting, const B
   frame.traced = color && trace.any() && !r.primitives->empty();
   if (frame.traced) {
     MENISCUS_CHECK(!frame.translucent);
+    r.tracedLight.setPrimitives(r.apart());
     r.tracedLight.set({trace, settings.shadows, settings.occlusion, lighting, background});
   }
   if (color && trace.shadows == 0 && settings.shadows.mode != ShadowMode::off && anyOpaque) {

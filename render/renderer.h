@@ -57,6 +57,10 @@ class Renderer {
   /// finite.
   void setPrimitives(std::shared_ptr<const Primitives> primitives);
 
+  /// Whether a picture with these settings needs every copy of the primitives' units by itself, which takes
+  /// the memory of copiesApart(): only casting from tiles does without.
+  bool drawsCopiesApart(const RenderSettings& settings) const;
+
   /// Labels of the pictures from now on.
   void setLabels(std::vector<LabelSprite> labels, const LabelColors& colors);
 

@@ -36,7 +36,7 @@ void TileQuadrics::prepare() {
 
 void TileQuadrics::add(FrameGraph& graph, const View& view, const Tile& tile, glm::vec2 sampleShift,
                        const GBufferRefs& g, const std::string& prefix) {
-  if (primitives_->spheres.empty() && primitives_->cylinders.empty() && primitives_->ellipsoids.empty()) {
+  if (primitives_->noQuadrics()) {
     graph.leaveOut("pass " + prefix + "tiles", "the scene has no quadrics");
     return;
   }

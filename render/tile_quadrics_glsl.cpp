@@ -86,7 +86,7 @@ void GlslTileQuadrics::update(Lists& lists, const tiles::TileTarget& target) {
 
 void GlslTileQuadrics::add(FrameGraph& graph, ShaderLibrary& shaders, const View& view, const Tile& tile,
                            glm::vec2 sampleShift, const GBufferRefs& g, const std::string& prefix) {
-  if (primitives_->spheres.empty() && primitives_->cylinders.empty() && primitives_->ellipsoids.empty()) {
+  if (primitives_->noQuadrics()) {
     graph.leaveOut("pass " + prefix + "tiles", "the scene has no quadrics");
     return;
   }

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <glm/trigonometric.hpp>
+#include <glm/vector_relational.hpp>
 
 #include "app/option_camera.h"
 #include "app/scene/settings.h"
@@ -34,16 +35,21 @@ double distanceFor(const RenderOptions& options, double radius) {
 
 }  // namespace
 
-BoundingSphere boundsOf(const std::vector<FitSphere>& spheres) {
+BoundingSphere boundsOf(const FitSpheres& spheres) {
   if (spheres.empty()) return {};
   glm::dvec3 low = spheres.front().center, high = low;
-  for (const FitSphere& s : spheres) {
+  const auto within = [&](const FitSphere& s) {
+    return glm::all(glm::greaterThanEqual(s.center - s.radius, low)) &&
+           glm::all(glm::lessThanEqual(s.center + s.radius, high));
+  };
+  spheres.forEach(within, [&](const FitSphere& s) {
     low = glm::min(low, s.center - s.radius);
     high = glm::max(high, s.center + s.radius);
-  }
+  });
   BoundingSphere bounds{(low + high) * 0.5, 0};
-  for (const FitSphere& s : spheres)
-    bounds.radius = std::max(bounds.radius, glm::length(s.center - bounds.center) + s.radius);
+  const auto reach = [&](const FitSphere& s) { return glm::length(s.center - bounds.center) + s.radius; };
+  spheres.forEach([&](const FitSphere& s) { return reach(s) <= bounds.radius; },
+                  [&](const FitSphere& s) { bounds.radius = std::max(bounds.radius, reach(s)); });
   return bounds;
 }
 
@@ -81,7 +87,7 @@ void MvsCamera::readCamera(const MvsNode& node, std::vector<std::string>& unsupp
   exact_ = camera;
 }
 
-void MvsCamera::readFocus(const MvsNode& node, const std::vector<FitSphere>& spheres,
+void MvsCamera::readFocus(const MvsNode& node, const FitSpheres& spheres,
                           std::vector<std::string>& unsupported) {
   node.listOtherParameters({"direction", "up", "radius", "radius_factor", "radius_extent"}, unsupported);
   glm::dvec3 direction(0, 0, -1), up(0, 1, 0);
@@ -106,7 +112,7 @@ void MvsCamera::readFocus(const MvsNode& node, const std::vector<FitSphere>& sph
   focusOrientation_ = *orientation;
 }
 
-Camera MvsCamera::camera(const RenderOptions& options, const std::vector<FitSphere>& all) const {
+Camera MvsCamera::camera(const RenderOptions& options, const FitSpheres& all) const {
   Camera camera = ownCamera(options, all);
   if (options.orientation.kind == Orientation::Kind::axis)
     camera.orientation = lookDownAxis(options.orientation.axis);
@@ -115,7 +121,7 @@ Camera MvsCamera::camera(const RenderOptions& options, const std::vector<FitSphe
   return withViewpoint(camera, options);
 }
 
-Camera MvsCamera::ownCamera(const RenderOptions& options, const std::vector<FitSphere>& all) const {
+Camera MvsCamera::ownCamera(const RenderOptions& options, const FitSpheres& all) const {
   Camera camera = lensOf(options);
   if (exact_) {
     camera.orientation = exact_->orientation;

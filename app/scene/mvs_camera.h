@@ -17,16 +17,15 @@ class MvsCamera {
   /// Reads a camera node. Throws InputError if the camera looks at itself or along `up`.
   void readCamera(const MvsNode& node, std::vector<std::string>& unsupported);
   /// Reads a focus node about these spheres.
-  void readFocus(const MvsNode& node, const std::vector<FitSphere>& spheres,
-                 std::vector<std::string>& unsupported);
+  void readFocus(const MvsNode& node, const FitSpheres& spheres, std::vector<std::string>& unsupported);
 
   /// The camera for a picture of these options; where nothing is asked for, it looks along -z at `all`. A
   /// camera node wins over focus nodes, of which several share one picture; --orient, --target,
   /// --distance, --near and --far of the options have their way over both.
-  Camera camera(const RenderOptions& options, const std::vector<FitSphere>& all) const;
+  Camera camera(const RenderOptions& options, const FitSpheres& all) const;
 
  private:
-  Camera ownCamera(const RenderOptions& options, const std::vector<FitSphere>& all) const;
+  Camera ownCamera(const RenderOptions& options, const FitSpheres& all) const;
   struct Reference {
     glm::dvec3 target, position, up;
     std::optional<double> near;
@@ -38,6 +37,6 @@ class MvsCamera {
 };
 
 /// The smallest sphere about the middle of their box that holds all spheres.
-BoundingSphere boundsOf(const std::vector<FitSphere>& spheres);
+BoundingSphere boundsOf(const FitSpheres& spheres);
 
 }  // namespace meniscus

@@ -102,7 +102,7 @@ Preparation StateReader::read() {
     throw InputError(
         fmt::format("{}: draws nothing{}", state_.root.place().path(),
                     made_.unsupported.empty() ? "" : " that is supported; " + made_.unsupported[0]));
-  std::vector<FitSphere> all;
+  FitSpheres all;
   addFitSpheres(picture_.scene.objects, all);
   for (const MvsNode* node : wholeFocus_) camera_.readFocus(*node, all, made_.unsupported);
   picture_.scene.camera = camera_.camera(options, all);
@@ -283,12 +283,16 @@ void StateReader::readComponent(const MvsNode& node, ReadStructure& structure,
   movePlacements(node, *structure.molecule, placements, made_.unsupported);
   const auto spheres = [&] {
     const double count = placedAtomCount(*structure.molecule, atoms, placements);
-    requireMemory(name_, count, count, sizeof(FitSphere) * count);
+    requireMemory(name_, count, count,
+                  bytesOfCopies(*structure.molecule, atoms, placements, Representation::spacefill));
+    requireIds(name_, count, count);
     SceneObject whole;
     whole.molecule = structure.molecule;
     whole.placements = placements;
     whole.atoms = atoms;
-    return fitSpheres(whole);
+    FitSpheres fit;
+    addFitSpheres(whole, {}, fit);
+    return fit;
   };
   for (const MvsNode& child : node.children()) {
     if (child.kind() == "representation") {
@@ -442,8 +446,9 @@ void StateReader::setColors(const MvsNode& node, bool schemeGiven, SceneObject& 
 void StateReader::addObject(SceneObject object, ReadStructure& structure) {
   const double count = placedAtomCount(*object.molecule, object.atoms, object.placements);
   atoms_ += count;
-  bytes_ += bytesPerAtom(object.representation) * count;
+  bytes_ += bytesOfCopies(*object.molecule, object.atoms, object.placements, object.representation);
   requireMemory(name_, atoms_, atoms_, bytes_);
+  requireIds(name_, count, count);
   Logger logger;
   if (needsBonds(object.representation) && !structure.hasBonds) {
     const Timed timed(made_.bondsSeconds);

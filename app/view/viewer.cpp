@@ -274,7 +274,7 @@ void Viewer::lookAlong(int axis) {
   std::optional<Camera> now = camera();
   const Picture* shown = shownPicture();
   if (!now || !shown) return;
-  std::vector<FitSphere> spheres;
+  FitSpheres spheres;
   addFitSpheres(shown->scene.objects, spheres);
   now->orientation = axis < 0 ? principalAxes(spheres, size_.height > size_.width) : lookDownAxis(axis);
   document()->camera = now;

@@ -11,8 +11,8 @@ namespace meniscus::tiles {
 
 /// A cluster's middle as a view sees it. Tiles are counted from the first of the grid.
 struct ClusterView {
-  float rotation[9];          ///< rows: view axes from the primitives' axes
-  float center[3];            ///< relative to the primitives' origin [Å]
+  float rotation[9];          ///< rows: view axes from the axes of the cluster's set
+  float center[3];            ///< in the coordinates of the set [Å]
   float z;                    ///< view space
   float depth;                ///< in front of the eye plane; 1 for orthographic views
   float slopeX, slopeY;       ///< view.xy / depth; 0 for orthographic views

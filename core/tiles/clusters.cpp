@@ -7,6 +7,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -16,7 +17,6 @@ namespace meniscus::tiles {
 
 namespace {
 
-// Below, placing every primitive costs less than a frame's other work.
 constexpr std::size_t kFewest = 20000;
 // Cells along an axis: so many bits that a cell holds a few primitives, which the sort then need not order.
 constexpr int kMostBitsPerAxis = 10;
@@ -33,6 +33,9 @@ std::uint32_t spread(std::uint32_t x) {
   x = (x | x << 4) & 0x030C30C3u;
   return (x | x << 2) & 0x09249249u;
 }
+
+// Of a radius: float32's rounding, and what a motion that is not quite rigid lengthens.
+constexpr float kSpare = 3e-5f;
 
 struct Keyed {
   std::uint32_t key, index;
@@ -60,13 +63,28 @@ void sortByKey(std::vector<Keyed>& items, int bits) {
   }
 }
 
+// A little larger, so that rounding brings no ball in front of it, whatever it is turned by.
+Clusters::Ball ballAround(std::span<const Clusters::Ball> balls) {
+  glm::vec3 from(std::numeric_limits<float>::infinity()), to(-from);
+  for (const Clusters::Ball& ball : balls) {
+    from = glm::min(from, ball.center);
+    to = glm::max(to, ball.center);
+  }
+  const glm::vec3 center = 0.5f * (from + to);
+  float radius = 0;
+  for (const Clusters::Ball& ball : balls)
+    radius = std::max(radius, glm::distance(center, ball.center) + ball.radius);
+  return {center, radius + kSpare * radius + 1e-6f * glm::length(center)};
+}
+
 }  // namespace
 
-void Clusters::build(std::size_t count, const std::function<Ball(std::size_t)>& ballOf) {
-  order_.clear();
-  balls_.clear();
-  list_.clear();
-  if (count < kFewest) return;
+bool Clusters::worthwhile(std::size_t primitives) {
+  return primitives >= kFewest;
+}
+
+void Clusters::add(std::size_t count, const std::function<Ball(std::size_t)>& ballOf,
+                   std::span<const RigidMotion> copies) {
   const auto drawn = [](const Ball& b) {
     return b.radius >= 0 && std::isfinite(b.radius + b.center.x + b.center.y + b.center.z);
   };
@@ -107,33 +125,55 @@ void Clusters::build(std::size_t count, const std::function<Ball(std::size_t)>& 
     }
   });
   sortByKey(items, 3 * bits);
-  order_.resize(items.size());
-  balls_.resize(items.size());
-  list_.resize((items.size() + kClusterSize - 1) / kClusterSize);
-  tbb::parallel_for(std::size_t{0}, list_.size(), [&](std::size_t c) {
-    const std::size_t first = c * kClusterSize, last = std::min(items.size(), first + kClusterSize);
-    glm::vec3 from(std::numeric_limits<float>::infinity()), to(-from);
+  const std::size_t before = order_.size(), clustersBefore = list_.size();
+  order_.resize(before + items.size());
+  balls_.resize(before + items.size());
+  list_.resize(clustersBefore + (items.size() + kClusterSize - 1) / kClusterSize);
+  tbb::parallel_for(clustersBefore, list_.size(), [&](std::size_t c) {
+    const std::size_t first = before + (c - clustersBefore) * kClusterSize,
+                      last = std::min(order_.size(), first + kClusterSize);
     for (std::size_t i = first; i < last; ++i) {
-      order_[i] = items[i].index;
-      balls_[i] = ballOf(items[i].index);
-      from = glm::min(from, balls_[i].center);
-      to = glm::max(to, balls_[i].center);
+      order_[i] = items[i - before].index;
+      balls_[i] = ballOf(order_[i]);
     }
-    const glm::vec3 center = 0.5f * (from + to);
-    float radius = 0;
-    for (std::size_t i = first; i < last; ++i) {
-      const Ball& ball = balls_[i];
-      radius = std::max(radius, glm::distance(center, ball.center) + ball.radius);
-    }
-    // A little more, so that rounding brings no ball in front of its cluster.
-    radius += 1e-5f * radius + 1e-6f * glm::length(center);
-    list_[c] = {center, radius, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last)};
+    const Ball ball = ballAround(std::span<const Ball>(balls_).subspan(first, last - first));
+    list_[c] = {ball.center, ball.radius, static_cast<std::uint32_t>(first),
+                static_cast<std::uint32_t>(last)};
   });
+  std::vector<Ball> clusters;
+  for (std::size_t c = clustersBefore; c < list_.size(); ++c)
+    clusters.push_back({list_[c].center, list_[c].radius});
+  addCopies(static_cast<std::uint32_t>(clustersBefore), ballAround(clusters), count, copies);
+}
+
+// Of the clusters from `first` on.
+void Clusters::addCopies(std::uint32_t first, const Ball& ball, std::size_t count,
+                         std::span<const RigidMotion> copies) {
+  const auto set = static_cast<std::uint32_t>(sets_.size()), last = static_cast<std::uint32_t>(list_.size());
+  std::uint32_t cluster = 0;
+  if (!copies_.empty()) {
+    cluster = copies_.back().firstCluster + sets_[copies_.back().set].size();
+  }
+  sets_.push_back({first, last, ball});
+  copies_.reserve(copies_.size() + copies.size());
+  for (const RigidMotion& motion : copies) {
+    copies_.push_back({motion, set, primitives_, cluster});
+    primitives_ += static_cast<std::uint32_t>(count);
+    cluster += last - first;
+  }
+}
+
+const ClusterCopy& Clusters::copyOf(std::uint32_t cluster) const {
+  // Of copies without clusters, the last one begins where the next begins.
+  return *std::prev(
+      std::upper_bound(copies_.begin(), copies_.end(), cluster,
+                       [](std::uint32_t number, const ClusterCopy& c) { return number < c.firstCluster; }));
 }
 
 std::uint64_t Clusters::bytes() const {
   return sizeof(std::uint32_t) * order_.capacity() + sizeof(Ball) * balls_.capacity() +
-         sizeof(Cluster) * list_.capacity();
+         sizeof(Cluster) * list_.capacity() + sizeof(Set) * sets_.capacity() +
+         sizeof(ClusterCopy) * copies_.capacity();
 }
 
 }  // namespace meniscus::tiles

@@ -1,6 +1,7 @@
 #include "core/tiles/metaball_source.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace meniscus::tiles {
@@ -22,10 +23,12 @@ Placement MetaballSource::place(std::size_t index) const {
 
 Clusters clustersOf(const MetaballField& field) {
   Clusters clusters;
-  clusters.build(field.balls.size(), [&](std::size_t index) -> Clusters::Ball {
+  if (!Clusters::worthwhile(field.balls.size())) return clusters;
+  const auto ballOf = [&](std::size_t index) -> Clusters::Ball {
     const Metaball& ball = field.balls[index];
     return {ball.center, ball.coefficient != 0 ? ball.support : -1};
-  });
+  };
+  clusters.add(field.balls.size(), ballOf, std::array{RigidMotion{}});
   return clusters;
 }
 

@@ -37,12 +37,12 @@ class MetaballSource : public TileSource {
   std::size_t size() const override { return field_.balls.size(); }
   Placement place(std::size_t index) const override;
   bool isBall(std::size_t) const override { return true; }
-  Placement placeBall(const glm::vec3& center, float radius) const override {
-    return projection_.placeSphere(center, static_cast<double>(radius));
+  Placement placeBall(const RigidMotion& motion, const glm::vec3& center, float radius) const override {
+    return projection_.placeSphere(motion(center), static_cast<double>(radius));
   }
-  void placeBalls(const Cluster& cluster, std::span<const Clusters::Ball> balls,
+  void placeBalls(const RigidMotion& motion, const Cluster& cluster, std::span<const Clusters::Ball> balls,
                   Placement* out) const override {
-    projection_.placeBalls(cluster, balls, out);
+    projection_.placeBalls(motion, cluster, balls, out);
   }
   /// Discs of the cores in which one ball alone reaches the level, if no ball takes anything away. They hide
   /// what lies behind from rays that begin outside of the surface.

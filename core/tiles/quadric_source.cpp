@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <iterator>
 #include <limits>
 
 namespace meniscus::tiles {
@@ -23,75 +24,126 @@ glm::dvec3 thirdAxis(const EllipsoidPrimitive& e) {
          static_cast<double>(e.shortest);
 }
 
-}  // namespace
+const QuadricCopy kOnce{};
 
-std::size_t QuadricSource::size() const {
-  return primitives_.spheres.size() + primitives_.cylinders.size() + primitives_.ellipsoids.size();
+// Calls f(quadrics, copies) for those in one place, and for each unit.
+template <typename F>
+void forSets(const Primitives& primitives, F f) {
+  if (primitives.quadricCount() > 0) f(primitives, std::span<const QuadricCopy>(&kOnce, 1));
+  for (const QuadricUnit& unit : primitives.units)
+    if (unit.quadricCount() > 0) f(unit, std::span<const QuadricCopy>(unit.copies));
 }
 
-Placement QuadricSource::place(std::size_t index) const {
-  const std::size_t spheres = primitives_.spheres.size(), rods = primitives_.cylinders.size();
+Clusters::Ball ballOf(const Quadrics& quadrics, std::size_t index) {
+  const std::size_t spheres = quadrics.spheres.size(), rods = quadrics.cylinders.size();
   if (index < spheres) {
-    const SpherePrimitive& s = primitives_.spheres[index];
-    return projection_.placeSphere(s.center, static_cast<double>(s.radius));
+    const SpherePrimitive& s = quadrics.spheres[index];
+    return {s.center, s.radius > 0 ? s.radius : -1};
   }
   if (index < spheres + rods) {
-    const CylinderPrimitive& c = primitives_.cylinders[index - spheres];
-    return projection_.placeCylinder(c.a, c.b, static_cast<double>(c.radius));
+    const CylinderPrimitive& c = quadrics.cylinders[index - spheres];
+    return {0.5f * (c.a + c.b), 0.5f * glm::length(c.b - c.a) + c.radius};
   }
-  const EllipsoidPrimitive& e = primitives_.ellipsoids[index - spheres - rods];
-  return projection_.placeEllipsoid(e.center, {e.axisA, e.axisB, thirdAxis(e)});
+  const EllipsoidPrimitive& e = quadrics.ellipsoids[index - spheres - rods];
+  return {e.center, std::max({glm::length(e.axisA), glm::length(e.axisB), e.shortest})};
 }
 
+}  // namespace
+
 Clusters clustersOf(const Primitives& primitives) {
-  const std::size_t spheres = primitives.spheres.size(), rods = primitives.cylinders.size();
   Clusters clusters;
-  clusters.build(spheres + rods + primitives.ellipsoids.size(), [&](std::size_t index) -> Clusters::Ball {
-    if (index < spheres) {
-      const SpherePrimitive& s = primitives.spheres[index];
-      return {s.center, s.radius > 0 ? s.radius : -1};
-    }
-    if (index < spheres + rods) {
-      const CylinderPrimitive& c = primitives.cylinders[index - spheres];
-      return {0.5f * (c.a + c.b), 0.5f * glm::length(c.b - c.a) + c.radius};
-    }
-    const EllipsoidPrimitive& e = primitives.ellipsoids[index - spheres - rods];
-    return {e.center, std::max({glm::length(e.axisA), glm::length(e.axisB), e.shortest})};
+  const QuadricCounts all = primitives.counts();
+  if (!Clusters::worthwhile(all.spheres + all.cylinders + all.ellipsoids)) return clusters;
+  forSets(primitives, [&](const Quadrics& quadrics, std::span<const QuadricCopy> copies) {
+    std::vector<RigidMotion> motions;
+    for (const QuadricCopy& copy : copies) motions.push_back(copy.motion);
+    clusters.add(
+        quadrics.quadricCount(), [&](std::size_t index) { return ballOf(quadrics, index); }, motions);
   });
   return clusters;
 }
 
-Occluder QuadricSource::occluder(std::size_t index) const {
-  const std::size_t spheres = primitives_.spheres.size(), rods = primitives_.cylinders.size();
-  if (index < spheres) {
-    const SpherePrimitive& s = primitives_.spheres[index];
-    return projection_.occluder(s.center, static_cast<double>(s.radius));
+QuadricSource::QuadricSource(const Primitives& primitives, const TileTarget& target) : projection_(target) {
+  forSets(primitives, [&](const Quadrics& quadrics, std::span<const QuadricCopy> copies) {
+    sets_.push_back({&quadrics, copies, size_});
+    size_ += quadrics.quadricCount() * copies.size();
+  });
+}
+
+const QuadricSource::Set& QuadricSource::setOf(std::size_t index) const {
+  if (sets_.size() == 1) return sets_.front();
+  return *std::prev(std::upper_bound(sets_.begin(), sets_.end(), index,
+                                     [](std::size_t i, const Set& set) { return i < set.first; }));
+}
+
+QuadricSource::Placed QuadricSource::at(std::size_t index) const {
+  const Set& set = setOf(index);
+  const Quadrics& q = *set.quadrics;
+  const std::size_t inSet = index - set.first, count = q.quadricCount();
+  const std::size_t copy = set.copies.size() == 1 ? 0 : inSet / count;
+  std::size_t i = inSet - copy * count;
+  Placed placed;
+  placed.copy = &set.copies[copy];
+  if (i < q.spheres.size()) {
+    placed.sphere = &q.spheres[i];
+  } else if (i -= q.spheres.size(); i < q.cylinders.size()) {
+    placed.cylinder = &q.cylinders[i];
+  } else {
+    placed.ellipsoid = &q.ellipsoids[i - q.cylinders.size()];
   }
-  if (index < spheres + rods) return {};  // rarely as wide as a tile
-  const EllipsoidPrimitive& e = primitives_.ellipsoids[index - spheres - rods];
-  return projection_.occluder(e.center, static_cast<double>(std::min(glm::length(e.axisB), e.shortest)));
+  return placed;
+}
+
+bool QuadricSource::isBall(std::size_t index) const {
+  return at(index).sphere != nullptr;
+}
+
+Placement QuadricSource::place(std::size_t index) const {
+  const Placed q = at(index);
+  const RigidMotion& motion = q.copy->motion;
+  if (q.sphere)
+    return projection_.placeSphere(motion(q.sphere->center), static_cast<double>(q.sphere->radius));
+  if (q.cylinder)
+    return projection_.placeCylinder(motion(q.cylinder->a), motion(q.cylinder->b),
+                                     static_cast<double>(q.cylinder->radius));
+  const EllipsoidPrimitive& e = *q.ellipsoid;
+  const glm::dmat3& turn = motion.turn;
+  return projection_.placeEllipsoid(
+      motion(e.center), {turn * glm::dvec3(e.axisA), turn * glm::dvec3(e.axisB), turn * thirdAxis(e)});
+}
+
+Occluder QuadricSource::occluder(std::size_t index) const {
+  const Placed q = at(index);
+  const RigidMotion& motion = q.copy->motion;
+  if (q.sphere) return projection_.occluder(motion(q.sphere->center), static_cast<double>(q.sphere->radius));
+  if (q.cylinder) return {};  // rarely as wide as a tile
+  const EllipsoidPrimitive& e = *q.ellipsoid;
+  return projection_.occluder(motion(e.center),
+                              static_cast<double>(std::min(glm::length(e.axisB), e.shortest)));
 }
 
 void QuadricSource::record(std::size_t index, QuadricRecord& out) const {
-  const std::size_t spheres = primitives_.spheres.size(), rods = primitives_.cylinders.size();
+  const Placed q = at(index);
+  const RigidMotion& motion = q.copy->motion;
+  const auto turn = [&](const glm::dvec3& v) { return projection_.turn(motion.turn * v); };
   out = {};
   out.lowY = -std::numeric_limits<float>::infinity();
   out.highY = std::numeric_limits<float>::infinity();
   glm::dvec3 center;
   double size = 0, reach = 0;
-  if (index < spheres) {
-    const SpherePrimitive& s = primitives_.spheres[index];
+  if (q.sphere) {
+    const SpherePrimitive& s = *q.sphere;
     out.kind = QuadricKind::sphere;
     center = s.center;
     size = reach = static_cast<double>(s.radius);
     out.radius = s.radius;
     out.albedo[0] = out.albedo[1] = packAlbedo(s.color);
     out.id[0] = out.id[1] = s.id;
-  } else if (index < spheres + rods) {
-    const CylinderPrimitive& c = primitives_.cylinders[index - spheres];
+  } else if (q.cylinder) {
+    const CylinderPrimitive& c = *q.cylinder;
     out.kind = QuadricKind::cylinder;
     center = 0.5 * (glm::dvec3(c.a) + glm::dvec3(c.b));
-    const glm::dvec3 along = projection_.turn(glm::dvec3(c.b) - glm::dvec3(c.a));
+    const glm::dvec3 along = turn(glm::dvec3(c.b) - glm::dvec3(c.a));
     const double length = glm::length(along);
     out.radius = c.radius;
     out.radii[0] = static_cast<float>(0.5 * length);
@@ -103,10 +155,10 @@ void QuadricSource::record(std::size_t index, QuadricRecord& out) const {
     out.id[0] = c.idA;
     out.id[1] = c.idB;
   } else {
-    const EllipsoidPrimitive& e = primitives_.ellipsoids[index - spheres - rods];
+    const EllipsoidPrimitive& e = *q.ellipsoid;
     out.kind = QuadricKind::ellipsoid;
     center = e.center;
-    const glm::dvec3 a = projection_.turn(e.axisA), b = projection_.turn(e.axisB);
+    const glm::dvec3 a = turn(e.axisA), b = turn(e.axisB);
     const glm::dvec3 u = glm::normalize(a), v = glm::normalize(b), w = glm::cross(u, v);
     store(out.axisU, u);
     store(out.axisV, v);
@@ -117,7 +169,8 @@ void QuadricSource::record(std::size_t index, QuadricRecord& out) const {
     out.albedo[0] = out.albedo[1] = packAlbedo(e.color);
     out.id[0] = out.id[1] = e.id;
   }
-  const ProjectedPoint p = projection_.project(center);
+  for (std::uint32_t& id : out.id) id += q.copy->idShift;
+  const ProjectedPoint p = projection_.project(motion(center));
   out.pixelX = p.pixel.x;
   out.pixelY = p.pixel.y;
   out.perPixel = static_cast<float>(projection_.perPixel(p));

@@ -33,27 +33,43 @@ struct QuadricRecord {
 /// Groups of neighbouring quadrics, in the order of QuadricSource.
 Clusters clustersOf(const Primitives& primitives);
 
+/// Quadrics in one place, and units in each of theirs, are numbered through: set after set, copy after copy.
 class QuadricSource : public TileSource {
  public:
   /// Both must outlive it.
-  QuadricSource(const Primitives& primitives, const TileTarget& target)
-      : primitives_(primitives), projection_(target) {}
+  QuadricSource(const Primitives& primitives, const TileTarget& target);
 
-  std::size_t size() const override;
+  std::size_t size() const override { return size_; }
   Placement place(std::size_t index) const override;
-  bool isBall(std::size_t index) const override { return index < primitives_.spheres.size(); }
-  Placement placeBall(const glm::vec3& center, float radius) const override {
-    return projection_.placeSphere(center, static_cast<double>(radius));
+  bool isBall(std::size_t index) const override;
+  Placement placeBall(const RigidMotion& motion, const glm::vec3& center, float radius) const override {
+    return projection_.placeSphere(motion(center), static_cast<double>(radius));
   }
-  void placeBalls(const Cluster& cluster, std::span<const Clusters::Ball> balls,
+  void placeBalls(const RigidMotion& motion, const Cluster& cluster, std::span<const Clusters::Ball> balls,
                   Placement* out) const override {
-    projection_.placeBalls(cluster, balls, out);
+    projection_.placeBalls(motion, cluster, balls, out);
   }
   Occluder occluder(std::size_t index) const override;
   void record(std::size_t index, QuadricRecord& out) const;
 
  private:
-  const Primitives& primitives_;
+  struct Set {
+    const Quadrics* quadrics;
+    std::span<const QuadricCopy> copies;
+    std::size_t first;  // number of its first quadric
+  };
+  // A quadric in one of its places; one of the pointers is set.
+  struct Placed {
+    const SpherePrimitive* sphere = nullptr;
+    const CylinderPrimitive* cylinder = nullptr;
+    const EllipsoidPrimitive* ellipsoid = nullptr;
+    const QuadricCopy* copy;
+  };
+  Placed at(std::size_t index) const;
+  const Set& setOf(std::size_t index) const;
+
+  std::vector<Set> sets_;
+  std::size_t size_ = 0;
   TileProjection projection_;
 };
 

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
+#include <iterator>
 
 #include "core/tiles/chunks.h"
 
@@ -16,6 +17,7 @@ namespace {
 
 constexpr float kLeastDisc = 0.70f;  // half the diagonal of a cell [pixels]
 constexpr std::size_t kSlabs = 16, kFewestClusters = 128;
+constexpr std::uint32_t kPlacedByTask = 256;  // clusters
 constexpr std::uint64_t kAllCells = ~std::uint64_t{0};
 
 // Of the 8 x 8 cells of a tile, those that lie in a disc; x, y: its centre relative to the tile's corner.
@@ -199,6 +201,54 @@ void TileLists::fillWhole(const TileSource& source, bool cut) {
   fillAll(source, cut);
 }
 
+// Into copyOrder_ the copies that are in the picture, in order of their buckets.
+void TileLists::sortCopies(const TileSource& source, const Clusters& clusters) {
+  const std::span<const ClusterCopy> all = clusters.copies();
+  placed_.resize(all.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, all.size(), kLeastChunk), [&](const auto& range) {
+    for (std::size_t c = range.begin(); c < range.end(); ++c) {
+      const Clusters::Ball& ball = clusters.sets()[all[c].set].ball;
+      placed_[c] = {source.placeBall(all[c].motion, ball.center, ball.radius), static_cast<std::uint32_t>(c)};
+    }
+  });
+  std::erase_if(placed_, [](const Placed& p) { return !p.place.visible(); });
+  sortByDepth(placed_);
+  copyOrder_.swap(sorted_);
+}
+
+// Appends to waitingClusters_ the clusters of copies that can be seen, in order.
+void TileLists::openCopies(const TileSource& source, const Clusters& clusters, std::span<const Placed> some,
+                           bool cut) {
+  struct Opened {
+    const ClusterCopy* copy;
+    std::size_t to;  // in placed_
+  };
+  std::vector<Opened> opened;
+  std::size_t count = 0;
+  for (const Placed& c : some) {
+    if (cut && hidden(c.place)) continue;
+    const ClusterCopy& copy = clusters.copies()[c.index];
+    opened.push_back({&copy, count});
+    count += clusters.sets()[copy.set].size();
+  }
+  openedCopies_ += opened.size();
+  placed_.resize(count);
+  tbb::parallel_for(std::size_t{0}, opened.size(), [&](std::size_t i) {
+    const auto [copy, to] = opened[i];
+    const Clusters::Set& set = clusters.sets()[copy->set];
+    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, set.size(), kPlacedByTask),
+                      [&, copy, to](const auto& range) {
+                        for (std::uint32_t k = range.begin(); k < range.end(); ++k) {
+                          const Cluster& cluster = clusters.list()[set.first + k];
+                          placed_[to + k] = {source.placeBall(copy->motion, cluster.center, cluster.radius),
+                                             copy->firstCluster + k};
+                        }
+                      });
+  });
+  std::copy_if(placed_.begin(), placed_.end(), std::back_inserter(waitingClusters_),
+               [](const Placed& p) { return p.place.visible(); });
+}
+
 // Into parts_ the primitives of clusters that can be seen, in order.
 void TileLists::openClusters(const TileSource& source, const Clusters& clusters, std::span<const Placed> some,
                              bool cut) {
@@ -212,12 +262,15 @@ void TileLists::openClusters(const TileSource& source, const Clusters& clusters,
     std::array<Placement, kClusterSize> placements;
     for (const Placed& c : some.subspan(part * perPart, std::min(perPart, some.size() - part * perPart))) {
       if (cut && hidden(c.place)) continue;
-      const Cluster& cluster = clusters.list()[c.index];
+      const ClusterCopy& copy = clusters.copyOf(c.index);
+      const Cluster& cluster =
+          clusters.list()[clusters.sets()[copy.set].first + (c.index - copy.firstCluster)];
       looked += cluster.last - cluster.first;
-      source.placeBalls(cluster, clusters.balls().subspan(cluster.first, cluster.last - cluster.first),
+      source.placeBalls(copy.motion, cluster,
+                        clusters.balls().subspan(cluster.first, cluster.last - cluster.first),
                         placements.data());
       for (std::uint32_t i = cluster.first; i < cluster.last; ++i) {
-        Placed p{placements[i - cluster.first], clusters.order()[i]};
+        Placed p{placements[i - cluster.first], copy.firstPrimitive + clusters.order()[i]};
         if (!p.place.visible() || (cut && hidden(p.place))) continue;
         if (!source.isBall(p.index)) p.place = source.place(p.index);
         if (p.place.visible()) parts_[part].push_back(p);
@@ -227,35 +280,58 @@ void TileLists::openClusters(const TileSource& source, const Clusters& clusters,
   placedCount_ += looked;
 }
 
+// From waitingClusters_ and waiting_ all that begins in buckets before `limit`; the rest goes on waiting.
 // Slabs end between buckets, so that the order of a list does not depend on them.
-void TileLists::fillBySlabs(const TileSource& source, const Clusters& clusters, bool cut) {
-  const std::span<const Cluster> all = clusters.list();
-  placed_.resize(all.size());
-  tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t c) {
-    placed_[c] = {source.placeBall(all[c].center, all[c].radius), static_cast<std::uint32_t>(c)};
-  });
-  std::erase_if(placed_, [](const Placed& p) { return !p.place.visible(); });
+void TileLists::fillUpTo(std::uint32_t limit, const TileSource& source, const Clusters& clusters,
+                         std::size_t perSlab, bool cut) {
+  placed_.clear();
+  stillWaitingClusters_.clear();
+  for (const Placed& c : waitingClusters_)
+    (bucketOf(c.place.front) < limit ? placed_ : stillWaitingClusters_).push_back(c);
+  waitingClusters_.swap(stillWaitingClusters_);
   sortByDepth(placed_);
   clusterOrder_.swap(sorted_);
   const std::vector<Placed>& order = clusterOrder_;
-  const std::size_t perSlab = std::max<std::size_t>(order.size() / kSlabs, kFewestClusters);
-  waiting_.clear();  // primitives of opened clusters, behind this slab
-  for (std::size_t next = 0; next < order.size();) {
+  std::size_t next = 0;
+  do {
     std::size_t end = std::min(next + perSlab, order.size());
     while (end < order.size() && bucketOf(order[end].place.front) == bucketOf(order[end - 1].place.front))
       ++end;
-    const std::uint32_t limit = end < order.size() ? bucketOf(order[end].place.front) : buckets_;
+    const std::uint32_t slabEnd = end < order.size() ? bucketOf(order[end].place.front) : limit;
     openClusters(source, clusters, std::span(order).subspan(next, end - next), cut);
     active_.clear();
     stillWaiting_.clear();
     const auto take = [&](const std::vector<Placed>& from) {
-      for (const Placed& p : from) (bucketOf(p.place.front) < limit ? active_ : stillWaiting_).push_back(p);
+      for (const Placed& p : from) (bucketOf(p.place.front) < slabEnd ? active_ : stillWaiting_).push_back(p);
     };
     take(waiting_);
     for (const std::vector<Placed>& part : parts_) take(part);
     waiting_.swap(stillWaiting_);
     sortByDepth(active_);
     fillAll(source, cut);
+    next = end;
+  } while (next < order.size());
+}
+
+void TileLists::fillBySlabs(const TileSource& source, const Clusters& clusters, bool cut) {
+  sortCopies(source, clusters);
+  const std::vector<Placed>& order = copyOrder_;
+  const auto clustersOf = [&](const Placed& copy) -> std::size_t {
+    return clusters.sets()[clusters.copies()[copy.index].set].size();
+  };
+  std::size_t all = 0;
+  for (const Placed& copy : order) all += clustersOf(copy);
+  const std::size_t perSlab = std::max<std::size_t>(all / kSlabs, kFewestClusters);
+  waitingClusters_.clear();
+  waiting_.clear();  // primitives of opened clusters, behind the last slab
+  for (std::size_t next = 0; next < order.size();) {
+    std::size_t end = next, opened = 0;
+    while (end < order.size() &&
+           (opened < perSlab || bucketOf(order[end].place.front) == bucketOf(order[end - 1].place.front)))
+      opened += clustersOf(order[end++]);
+    openCopies(source, clusters, std::span(order).subspan(next, end - next), cut);
+    fillUpTo(end < order.size() ? bucketOf(order[end].place.front) : buckets_, source, clusters, perSlab,
+             cut);
     next = end;
   }
 }
@@ -270,9 +346,9 @@ void TileLists::build(const TileSource& source, const Clusters& clusters, const 
                           std::numeric_limits<float>::min());
   blocks_.resize(static_cast<std::size_t>(grid_.blocks()));
   filling_.resize(blocks_.size());
-  placedCount_ = 0;
+  placedCount_ = openedCopies_ = 0;
   tbb::parallel_for(0, grid_.blocks(), [&](int b) { startBlock(b); });
-  if (clusters.list().empty()) {
+  if (clusters.empty()) {
     fillWhole(source, cut);
   } else {
     fillBySlabs(source, clusters, cut);

@@ -1,10 +1,11 @@
 #pragma once
 // Which primitives a tile's rays can meet, nearest first, and none that an opaque front hides from all of
-// them. Built in parallel, front to back in slabs of depth: clusters of primitives that can still be seen,
-// their primitives' bounds, a bucket sort by nearest depth, distribution to blocks of tiles, then each block
-// by itself. A tile keeps the cells (pixels) that discs inside its primitives cover whole; once all are
-// covered, what lies behind the farthest of these discs is not listed any more, and clusters behind it are
-// not even opened. So the lists hold what can be seen and little else, however deep the scene.
+// them. Built in parallel, front to back in slabs of depth: copies of sets of clusters, and clusters in them,
+// that can still be seen, their primitives' bounds, a bucket sort by nearest depth, distribution to blocks of
+// tiles, then each block by itself. A tile keeps the cells (pixels) that discs inside its primitives cover
+// whole; once all are covered, what lies behind the farthest of these discs is not listed any more, and
+// clusters and copies behind it are not even opened. So the lists hold what can be seen and little else,
+// however deep the scene.
 
 #include <array>
 #include <cstdint>
@@ -17,7 +18,7 @@
 
 namespace meniscus::tiles {
 
-/// Primitives of any kind, by index. Everything is called from several threads.
+/// Primitives of any kind, by index, each copy by itself. Everything is called from several threads.
 class TileSource {
  public:
   virtual ~TileSource() = default;
@@ -26,11 +27,11 @@ class TileSource {
   /// Whether place() is placeBall() of the primitive's own bounding sphere.
   virtual bool isBall(std::size_t index) const = 0;
   virtual Occluder occluder(std::size_t index) const = 0;
-  /// Where anything of a sphere can be seen, relative to the primitives' origin.
-  virtual Placement placeBall(const glm::vec3& center, float radius) const = 0;
+  /// Where anything of a sphere can be seen. motion: of its centre, to relative to the primitives' origin.
+  virtual Placement placeBall(const RigidMotion& motion, const glm::vec3& center, float radius) const = 0;
   /// The same of the bounding spheres in a cluster; it may find them a little larger.
-  virtual void placeBalls(const Cluster& cluster, std::span<const Clusters::Ball> balls,
-                          Placement* out) const = 0;
+  virtual void placeBalls(const RigidMotion& motion, const Cluster& cluster,
+                          std::span<const Clusters::Ball> balls, Placement* out) const = 0;
 };
 
 /// The lists of a block of tiles.
@@ -60,6 +61,8 @@ class TileLists {
   std::size_t entryCount() const;
   /// Primitives whose bounds were looked at one by one.
   std::size_t placedCount() const { return placedCount_; }
+  /// Copies whose clusters were looked at one by one.
+  std::size_t openedCopies() const { return openedCopies_; }
   std::uint64_t bytes() const;
 
  private:
@@ -79,6 +82,10 @@ class TileLists {
   };
   void fillWhole(const TileSource& source, bool cut);
   void fillBySlabs(const TileSource& source, const Clusters& clusters, bool cut);
+  void sortCopies(const TileSource& source, const Clusters& clusters);
+  void openCopies(const TileSource& source, const Clusters& clusters, std::span<const Placed> some, bool cut);
+  void fillUpTo(std::uint32_t limit, const TileSource& source, const Clusters& clusters, std::size_t perSlab,
+                bool cut);
   bool hidden(const Placement& p) const;
   void sortByDepth(const std::vector<Placed>& items);
   void openClusters(const TileSource& source, const Clusters& clusters, std::span<const Placed> some,
@@ -93,10 +100,12 @@ class TileLists {
   TileGrid grid_{PixelArea{}};
   float nearZ_ = 0, bucketDepth_ = 0;
   std::uint32_t buckets_ = 1;
-  std::size_t placedCount_ = 0;
+  std::size_t placedCount_ = 0, openedCopies_ = 0;
   std::vector<Placed> sorted_;
   // Scratch that keeps its memory from view to view.
-  std::vector<Placed> placed_, clusterOrder_, active_, waiting_, stillWaiting_;
+  std::vector<Placed> placed_, copyOrder_, clusterOrder_;
+  std::vector<Placed> active_, waiting_, stillWaiting_;  // primitives
+  std::vector<Placed> waitingClusters_, stillWaitingClusters_;
   std::vector<std::vector<Placed>> parts_;
   std::vector<std::size_t> bins_;
   std::vector<std::uint32_t> blockEntries_;  // positions in sorted_, block after block

@@ -25,10 +25,6 @@ TileProjection::TileProjection(const TileTarget& target)
       farZ_(static_cast<float>(target.view.farZ)),
       grid_(target.area) {
   block_.scale.z = perspective_ ? 1.0f : 0.0f;  // all that the shared bounds ask of a view
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column)
-      cluster_.rotation[3 * row + column] = static_cast<float>(rotation_[column][row]);
-  }
   cluster_.tilesPerUnit = static_cast<float>(1 / (pixelSize_ * kTileSize));
   cluster_.padding = kPadding / kTileSize;
   cluster_.columns = grid_.columns;
@@ -109,18 +105,23 @@ void TileProjection::rowsOf(const ProjectedPoint& center, float radius, float& l
   high = y.high * perPixel + spare;
 }
 
-void TileProjection::placeBalls(const Cluster& cluster, std::span<const Clusters::Ball> balls,
-                                Placement* out) const {
-  const ProjectedPoint p = project(cluster.center);
+void TileProjection::placeBalls(const RigidMotion& motion, const Cluster& cluster,
+                                std::span<const Clusters::Ball> balls, Placement* out) const {
+  const ProjectedPoint p = project(motion(cluster.center));
   const double radius = static_cast<double>(cluster.radius);
   if (perspective_ && !(p.depth > 2 * radius)) {
-    std::transform(balls.begin(), balls.end(), out, [this](const Clusters::Ball& ball) {
-      return placeSphere(ball.center, static_cast<double>(ball.radius));
+    std::transform(balls.begin(), balls.end(), out, [&](const Clusters::Ball& ball) {
+      return placeSphere(motion(ball.center), static_cast<double>(ball.radius));
     });
     return;
   }
   ClusterView view = cluster_;
-  for (int k = 0; k < 3; ++k) view.center[k] = cluster.center[k];
+  const glm::dmat3 turn = rotation_ * motion.turn;
+  for (int row = 0; row < 3; ++row) {
+    view.center[row] = cluster.center[row];
+    for (int column = 0; column < 3; ++column)
+      view.rotation[3 * row + column] = static_cast<float>(turn[column][row]);
+  }
   view.z = static_cast<float>(p.view.z);
   view.depth = static_cast<float>(p.depth);
   view.slopeX = perspective_ ? static_cast<float>(p.view.x / p.depth) : 0.0f;

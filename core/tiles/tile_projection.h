@@ -38,8 +38,9 @@ class TileProjection {
 
   /// Tiles that a sphere may touch with any of their pixels' rays; front = -infinity if none.
   Placement placeSphere(const glm::dvec3& center, double radius) const;
-  /// The same of the balls of a cluster, nearly as close.
-  void placeBalls(const Cluster& cluster, std::span<const Clusters::Ball> balls, Placement* out) const;
+  /// The same of the balls of a cluster that stands elsewhere, nearly as close.
+  void placeBalls(const RigidMotion& motion, const Cluster& cluster, std::span<const Clusters::Ball> balls,
+                  Placement* out) const;
   /// Bounds of a sphere's rows, relative to its projected centre [pixels]; untouched if it has none.
   void rowsOf(const ProjectedPoint& center, float radius, float& low, float& high) const;
   /// axisA, axisB, axisC: semi-axes in world directions.

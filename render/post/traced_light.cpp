@@ -5,6 +5,7 @@
 namespace meniscus {
 
 void TracedLight::setPrimitives(std::shared_ptr<const Primitives> primitives) {
+  if (primitives == primitives_) return;
   primitives_ = std::move(primitives);
   scene_.reset();
 }

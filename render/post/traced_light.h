@@ -14,7 +14,8 @@ namespace meniscus {
 
 class TracedLight {
  public:
-  /// What is traced from now on; trees are built when they are needed first.
+  /// What is traced from now on, without units; trees are built when they are needed first, and kept for the
+  /// same primitives.
   void setPrimitives(std::shared_ptr<const Primitives> primitives);
   /// Of one picture.
   void set(const TracedLightSettings& settings) { settings_ = settings; }

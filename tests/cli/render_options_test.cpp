@@ -367,6 +367,36 @@ TEST_F(RenderOption, assemblyAndReplicatePlaceCopies) {
   EXPECT_EQ(spheres("1a8o.cif.gz", {"--assembly", "1", "--replicate", "1x1x2"}), 4 * once);
 }
 
+TEST_F(RenderOption, copiesShareMemoryAndLookAsEachByItself) {
+  const std::vector<std::string> many{"--assembly", "1",       "--replicate", "5x4x3",
+                                      "--size",     "400x300", "--channels",  "id,distance"};
+  const auto drawn = [&](const char* quadrics) {
+    std::vector<std::string> more = many;
+    more.insert(more.end(), {"--quadrics", quadrics, "--stats", "stats.json"});
+    return render("1a8o.cif.gz", more, "out.exr");
+  };
+  const Picture tiles = drawn("tiles");
+  const nlohmann::json picture =
+      nlohmann::json::parse(readFile(folder_ / "stats.json"), nullptr, false)["pictures"][0];
+  EXPECT_EQ(picture["copies"], 120);
+  EXPECT_EQ(picture["spheres"], 120 * picture["atoms"].get<int>());
+  EXPECT_LT(picture["quadricBytes"], 100'000);
+  const Picture splatted = drawn("splat");  // draws every copy by itself
+  ASSERT_EQ(tiles.channels, 2);
+  ASSERT_EQ(tiles.pixels.size(), splatted.pixels.size());
+  int different = 0, covered = 0;
+  for (std::size_t i = 0; i < tiles.pixels.size(); i += 2) {
+    bool same = true;
+    for (std::size_t c = i; c < i + 2; ++c)
+      same = same && (tiles.pixels[c] == splatted.pixels[c] ||
+                      std::abs(tiles.pixels[c] / splatted.pixels[c] - 1) < 4e-6f);
+    different += !same;
+    covered += std::isfinite(tiles.pixels[i]) && std::isfinite(tiles.pixels[i + 1]);
+  }
+  EXPECT_LE(different, 400 * 300 / 100000);
+  EXPECT_GT(covered, 30000);
+}
+
 TEST_F(RenderOption, backendChoosesTheWayToOpenGl) {
   EXPECT_TRUE(stats(kProtein, {"--backend", "egl"})["backend"].get<std::string>().starts_with("EGL"));
   EXPECT_EQ(stats(kProtein, {"--backend", "osmesa"})["backend"], "OSMesa");

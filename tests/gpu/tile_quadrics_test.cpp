@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "render/renderer.h"
 #include "tests/support/gl_fixture.h"
+#include "tests/support/random.h"
 #include "tests/support/scenes.h"
 
 namespace meniscus {
@@ -96,6 +98,52 @@ TEST_F(TileQuadricsTest, NeedNoBufferAndNoProgram) {
   EXPECT_TRUE(std::any_of(stats.omissions.begin(), stats.omissions.end(), [](const OmissionStats& o) {
     return o.what == "pass spheres" && o.reason.find("tiles") != std::string::npos;
   }));
+}
+
+std::shared_ptr<const Primitives> copiesOfAChain(std::uint32_t copies) {
+  auto scene = std::make_shared<Primitives>();
+  QuadricUnit& unit = scene->units.emplace_back();
+  static_cast<Quadrics&>(unit) = *test::randomChain(300, 4);
+  test::Random random(9);
+  for (std::uint32_t i = 0; i < copies; ++i)
+    unit.copies.push_back({{glm::mat3_cast(random.rotation()), random.inBox(25)}, 300 * i});
+  return scene;
+}
+
+TEST_F(TileQuadricsTest, CopiesLookAsEachByItself) {
+  constexpr ImageSize kSize{400, 300};
+  const auto drawn = [&](std::uint32_t copies, ImageSize size, const RenderSettings& settings, bool each) {
+    std::shared_ptr<const Primitives> scene = copiesOfAChain(copies);
+    const auto apart = std::make_shared<const Primitives>(copiesApart(*scene));
+    const View view = test::viewOf(*apart, size);
+    if (each) scene = apart;
+    Renderer renderer;
+    renderer.setPrimitives(scene);
+    EXPECT_EQ(renderer.drawsCopiesApart(settings),
+              settings.quadrics == QuadricMethod::splat || settings.occlusion.on || settings.trace.any());
+    test::MemorySink sink;
+    renderer.renderPicture(view, Lighting{}, {}, settings, PixelFormat::rgba8, sink);
+    return sink.bytes;
+  };
+  RenderSettings settings = test::withSamples(1, QuadricMethod::tiles);
+  settings.shadows.mode = ShadowMode::hard;
+  const std::vector<std::byte> a = drawn(40, kSize, settings, false), b = drawn(40, kSize, settings, true);
+  int different = 0;
+  for (std::size_t i = 0; i < a.size(); i += 4) {
+    int most = 0;
+    for (std::size_t c = 0; c < 4; ++c)
+      most = std::max(most, std::abs(std::to_integer<int>(a[i + c]) - std::to_integer<int>(b[i + c])));
+    different += most > 1;
+  }
+  EXPECT_LE(different, kSize.width * kSize.height / 100000);
+
+  // Where every copy is needed by itself, to the byte.
+  settings.quadrics = QuadricMethod::splat;
+  settings.occlusion.on = true;
+  EXPECT_EQ(drawn(3, {64, 48}, settings, false), drawn(3, {64, 48}, settings, true));
+  settings.occlusion.on = false;
+  settings.trace.shadows = 1;
+  EXPECT_EQ(drawn(3, {64, 48}, settings, false), drawn(3, {64, 48}, settings, true));
 }
 
 TEST_F(TileQuadricsTest, AutomaticChoosesByDevice) {

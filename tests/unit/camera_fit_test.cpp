@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/ext/matrix_transform.hpp>
 #include <limits>
 #include <vector>
 
@@ -245,6 +246,33 @@ TEST(RotatedBy, TurnsAboutTheScreensAxesInTheOrderXyz) {
              glm::angleAxis(glm::radians(30.0), glm::dvec3(0, 0, 1)) * (start * glm::dvec3(1, 2, 3)));
   EXPECT_LT(angleBetween(rotatedBy(start, {0, 0, 0}), start), 1e-7);
   EXPECT_LT(angleBetween(rotatedBy(start, {360, 720, -360}), start), 1e-7);
+}
+
+// Copies that are kept once, against every copy by itself; one of the places is not rigid.
+TEST(CameraFit, CopiesCountAsEachByItself) {
+  Random random(7);
+  for (int i = 0; i < 20; ++i) {
+    const std::vector<FitSphere> unit = cloud(random, 40);
+    std::vector<glm::dmat4> places;
+    for (int k = 0; k < 30; ++k)
+      places.push_back(glm::translate(glm::dmat4(1.0), random.inBox(300)) *
+                       glm::mat4_cast(random.rotation()));
+    places.push_back(glm::scale(glm::dmat4(1.0), {6, 1, 1}));
+    FitSpheres shared;
+    shared.add(unit, places);
+    std::vector<FitSphere> apart;
+    for (const glm::dmat4& place : places)
+      for (const FitSphere& s : unit)
+        apart.push_back({glm::dvec3(place * glm::dvec4(s.center, 1)), s.radius});
+    ASSERT_EQ(shared.size(), apart.size());
+    EXPECT_LT(angleBetween(principalAxes(shared, false), principalAxes(apart, false)), 1e-7);
+    Camera camera;
+    camera.orientation = random.rotation();
+    camera.projection = i % 2 == 0 ? Projection::perspective : Projection::orthographic;
+    const Camera a = fitted(camera, {300, 200}, shared), b = fitted(camera, {300, 200}, apart);
+    EXPECT_EQ(a.distance, b.distance);
+    EXPECT_EQ(a.target, b.target);
+  }
 }
 
 }  // namespace

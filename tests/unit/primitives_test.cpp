@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/ext/matrix_transform.hpp>
 #include <set>
@@ -229,6 +230,75 @@ TEST(FitSpheres, OfSomeAtomsTakeTheseAtomsOfEveryPlacement) {
   EXPECT_EQ(fit[0].center, m->positions[1]);
   EXPECT_EQ(fit[1].center, m->positions[4]);
   EXPECT_EQ(fit[2].center, m->positions[1] + glm::dvec3(0, 0, 50));
+}
+
+// An object in many places of two kinds, one of them not rigid.
+SceneObject assemblyOf(Representation representation) {
+  SceneObject object = objectOf(stringOfAtoms(90), representation);
+  Random random(4);
+  for (std::uint32_t i = 0; i < 20; ++i) {
+    const glm::dmat4 turn = glm::mat4_cast(random.rotation());
+    object.placements.push_back(
+        {glm::translate(glm::dmat4(1.0), random.inBox(500)) * turn, {{0, 80 + i % 2}}});
+  }
+  object.placements.push_back({glm::scale(glm::dmat4(1.0), {1.1, 1, 1}), {{0, 80}}});
+  object.placements.push_back({glm::dmat4(1.0), {{3, 4}}});
+  return object;
+}
+
+TEST(BuildPrimitives, CopiesOfTheSameResiduesAreOneUnit) {
+  for (const Representation representation :
+       {Representation::spacefill, Representation::ballAndStick, Representation::ellipsoids}) {
+    Scene scene;
+    scene.objects = {assemblyOf(representation)};
+    const Primitives apart = buildPrimitives(scene),
+                     shared = buildPrimitives(scene, LineGroups::none, Copies::shared);
+    ASSERT_EQ(shared.units.size(), 2u) << "of 80 and of 81 residues";
+    for (const QuadricUnit& unit : shared.units) EXPECT_EQ(unit.copies.size(), 10u);
+    EXPECT_EQ(shared.spheres.size(), 90u + 80 + 4) << "in one place; not rigid; too few";
+    const QuadricCounts counts = shared.counts();
+    EXPECT_EQ(counts.spheres, apart.spheres.size());
+    EXPECT_EQ(counts.cylinders, apart.cylinders.size());
+    EXPECT_LT(shared.quadricBytes() * 2, apart.quadricBytes());
+
+    Primitives again = copiesApart(shared);
+    EXPECT_TRUE(again.units.empty());
+    const auto byId = [](const auto& a, const auto& b) { return a.id < b.id; };
+    std::sort(again.spheres.begin(), again.spheres.end(), byId);
+    ASSERT_EQ(again.spheres.size(), apart.spheres.size());
+    for (std::size_t i = 0; i < apart.spheres.size(); ++i) {
+      const SpherePrimitive &a = apart.spheres[i], &b = again.spheres[i];
+      ASSERT_EQ(a.id, b.id);
+      ASSERT_EQ(a.color, b.color);
+      ASSERT_EQ(a.radius, b.radius);
+      ASSERT_LT(glm::length(a.center - b.center), 1e-4f);
+    }
+    const auto bondBefore = [](const CylinderPrimitive& a, const CylinderPrimitive& b) {
+      return a.idA < b.idA;
+    };
+    std::sort(again.cylinders.begin(), again.cylinders.end(), bondBefore);
+    ASSERT_EQ(again.cylinders.size(), apart.cylinders.size());
+    for (std::size_t i = 0; i < apart.cylinders.size(); ++i) {
+      const CylinderPrimitive &a = apart.cylinders[i], &b = again.cylinders[i];
+      ASSERT_EQ(a.idA, b.idA);
+      ASSERT_EQ(a.idB, b.idB);
+      ASSERT_EQ(a.colorA, b.colorA);
+      ASSERT_LT(glm::length(a.a - b.a) + glm::length(a.b - b.b), 2e-4f);
+    }
+    const BoundingSphere one = apart.bounds(), other = shared.bounds();
+    EXPECT_LT(glm::length(one.center - other.center), 1e-3);
+    EXPECT_NEAR(one.radius, other.radius, 1e-3);
+  }
+}
+
+TEST(BuildPrimitives, CopiesTakeTheMemoryOfTheirUnit) {
+  SceneObject object = objectOf(stringOfAtoms(20000), Representation::spacefill);
+  object.placements.resize(500, object.placements.front());
+  Scene scene;
+  scene.objects = {object};
+  const Primitives shared = buildPrimitives(scene, LineGroups::none, Copies::shared);
+  EXPECT_EQ(shared.counts().spheres, 10'000'000u);
+  EXPECT_LT(shared.quadricBytes(), 2 * 20000 * sizeof(SpherePrimitive) + 2 * 500 * sizeof(QuadricCopy));
 }
 
 TEST(BuildPrimitives, ASurfaceIsOneFieldOfAllPlacements) {

@@ -95,7 +95,7 @@ TEST_F(SceneErrors, copiesThatDoNotFitIntoMemoryAreRefused) {
     Json scene = structureScene("2hhb.pdb.gz", {component});
     Json& structure = scene["root"]["children"][0]["children"][0]["children"][0];
     structure = withCustom(structure, {{"replicate", "100x100x100"}});
-    expectParts(errorOf(scene), {"'fig.mvsj'", "GB of memory, more than there is"});
+    expectParts(errorOf(scene), {"'fig.mvsj'", "more than the"});
   }
 }
 
