@@ -15,27 +15,47 @@ namespace meniscus::tiles {
 
 namespace {
 
-constexpr float kLeastDisc = 0.70f;  // half the diagonal of a cell [pixels]
-constexpr std::size_t kSlabs = 16, kFewestClusters = 128;
-constexpr std::uint32_t kPlacedByTask = 256;  // clusters
-constexpr std::uint64_t kAllCells = ~std::uint64_t{0};
+constexpr std::size_t kSlabs = 16, kFewestClusters = 128, kMostClusters = 2048;  // of a slab
+constexpr std::uint32_t kPlacedByTask = 256;                                     // clusters
 
-// Of the 8 x 8 cells of a tile, those that lie in a disc; x, y: its centre relative to the tile's corner.
-std::uint64_t cellsInside(float x, float y, float radius) {
-  const float r2 = radius * radius;
-  std::uint64_t cells = 0;
-  for (int row = 0; row < kTileSize; ++row) {
-    const float dy = std::abs(static_cast<float>(row) + 0.5f - y) + 0.5f;
+// A smaller disc holds no cell: half a cell's diagonal [pixels].
+constexpr float kLeastDisc = 0.70f / kCellsPerPixel;
+// Of larger ones, the rows of cells are looked at pixel by pixel: few more would count.
+constexpr float kFineDisc = 3;
+
+// Marks the cells of a tile that lie in a disc; x, y: its centre relative to the tile's corner. Returns
+// whether any is new.
+bool coverCells(TileCells& cells, float x, float y, float radius) {
+  const int step = radius > kFineDisc ? kCellsPerPixel : 1;  // rows that are taken together
+  const float height = static_cast<float>(step) / kCellsPerPixel, r2 = radius * radius;
+  constexpr float kSide = kTileSize;
+  const int from = static_cast<int>(std::clamp(y - radius, 0.0f, kSide) * kCellsPerPixel) / step * step;
+  const int to =
+      std::min(static_cast<int>(std::clamp(y + radius, 0.0f, kSide) * kCellsPerPixel) + 1, kTileCells);
+  std::uint32_t added = 0;
+  for (int row = from; row < to; row += step) {
+    const float dy = std::abs(static_cast<float>(row) / kCellsPerPixel + 0.5f * height - y) + 0.5f * height;
     const float under = r2 - dy * dy;
     if (!(under > 0)) continue;
     const float half = std::sqrt(under);
-    const auto low = static_cast<int>(std::ceil(std::max(x - half, 0.0f)));
-    const auto high = static_cast<int>(std::min(x + half, static_cast<float>(kTileSize)));
+    const auto low = static_cast<int>(std::ceil(std::max(x - half, 0.0f) * kCellsPerPixel));
+    const auto high = static_cast<int>(std::min(x + half, kSide) * kCellsPerPixel);
     if (low >= high) continue;
-    const std::uint64_t bits = ((std::uint64_t{1} << high) - 1) & ~((std::uint64_t{1} << low) - 1);
-    cells |= bits << (row * kTileSize);
+    const auto bits =
+        static_cast<std::uint32_t>(((std::uint64_t{1} << high) - 1) & ~((std::uint64_t{1} << low) - 1));
+    for (int i = row; i < row + step; ++i) {
+      std::uint32_t& here = cells[static_cast<std::size_t>(i)];
+      added |= bits & ~here;
+      here |= bits;
+    }
   }
-  return cells;
+  return added != 0;
+}
+
+bool allCovered(const TileCells& cells) {
+  std::uint32_t all = ~std::uint32_t{0};
+  for (const std::uint32_t row : cells) all &= row;
+  return all == ~std::uint32_t{0};
 }
 
 }  // namespace
@@ -96,7 +116,7 @@ void TileLists::distribute() {
 
 void TileLists::startBlock(int index) {
   Filling& f = filling_[static_cast<std::size_t>(index)];
-  f.covered.fill(0);
+  f.cells.clear();
   f.behind.fill(-std::numeric_limits<float>::infinity());
   f.farthest.fill(std::numeric_limits<float>::infinity());
   f.counts.fill(0);
@@ -117,6 +137,7 @@ void TileLists::fillBlock(int index, const TileSource& source, bool cut) {
             tilesY = std::min(kBlockTiles, grid_.rows - blockY);
   const std::size_t first = blockFirst_[static_cast<std::size_t>(index)],
                     last = blockFirst_[static_cast<std::size_t>(index) + 1];
+  if (first < last && f.cells.empty()) f.cells.resize(kTilesPerBlock);
   for (std::size_t k = first; k < last; ++k) {
     const Placed& p = sorted_[blockEntries_[k]];
     if (f.open == 0 && p.place.front + slack() <= f.allBehind) break;
@@ -138,13 +159,14 @@ void TileLists::fillBlock(int index, const TileSource& source, bool cut) {
         f.tiles.push_back(static_cast<std::uint32_t>(tile));
         f.members.push_back(static_cast<std::uint32_t>(block.members.size() - 1));
         ++f.counts[tile];
-        if (f.covered[tile] == kAllCells || !(disc.radius > kLeastDisc)) continue;
-        const std::uint64_t cells = cellsInside(static_cast<float>(disc.x - x * kTileSize),
-                                                static_cast<float>(disc.y - y * kTileSize), disc.radius);
-        if ((cells & ~f.covered[tile]) == 0) continue;
-        f.covered[tile] |= cells;
+        const bool covered = f.behind[tile] > -std::numeric_limits<float>::infinity();
+        if (covered || !(disc.radius > kLeastDisc)) continue;
+        TileCells& cells = f.cells[tile];
+        if (!coverCells(cells, static_cast<float>(disc.x - x * kTileSize),
+                        static_cast<float>(disc.y - y * kTileSize), disc.radius))
+          continue;
         f.farthest[tile] = std::min(f.farthest[tile], disc.z);
-        if (f.covered[tile] != kAllCells) continue;
+        if (!allCovered(cells)) continue;
         f.behind[tile] = f.farthest[tile];
         f.allBehind = std::min(f.allBehind, f.behind[tile]);
         --f.open;
@@ -321,7 +343,7 @@ void TileLists::fillBySlabs(const TileSource& source, const Clusters& clusters, 
   };
   std::size_t all = 0;
   for (const Placed& copy : order) all += clustersOf(copy);
-  const std::size_t perSlab = std::max<std::size_t>(all / kSlabs, kFewestClusters);
+  const std::size_t perSlab = std::clamp(all / kSlabs, kFewestClusters, kMostClusters);
   waitingClusters_.clear();
   waiting_.clear();  // primitives of opened clusters, behind the last slab
   for (std::size_t next = 0; next < order.size();) {
@@ -382,7 +404,8 @@ std::uint64_t TileLists::bytes() const {
                       sizeof(std::uint32_t) * blockEntries_.capacity() +
                       sizeof(TileBlock) * blocks_.capacity();
   for (const Filling& f : filling_)
-    sum += sizeof(std::uint32_t) * (f.tiles.capacity() + f.members.capacity());
+    sum += sizeof(std::uint32_t) * (f.tiles.capacity() + f.members.capacity()) +
+           sizeof(TileCells) * f.cells.capacity();
   for (const TileBlock& b : blocks_)
     sum += sizeof(std::uint32_t) * (b.members.capacity() + b.entries.capacity());
   return sum;

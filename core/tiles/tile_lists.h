@@ -2,10 +2,10 @@
 // Which primitives a tile's rays can meet, nearest first, and none that an opaque front hides from all of
 // them. Built in parallel, front to back in slabs of depth: copies of sets of clusters, and clusters in them,
 // that can still be seen, their primitives' bounds, a bucket sort by nearest depth, distribution to blocks of
-// tiles, then each block by itself. A tile keeps the cells (pixels) that discs inside its primitives cover
-// whole; once all are covered, what lies behind the farthest of these discs is not listed any more, and
-// clusters and copies behind it are not even opened. So the lists hold what can be seen and little else,
-// however deep the scene.
+// tiles, then each block by itself. A tile keeps the cells (sixteenths of a pixel) that discs inside its
+// primitives cover whole; once all are covered, what lies behind the farthest of these discs is not listed
+// any more, and clusters and copies behind it are not even opened. So the lists hold what can be seen and
+// little else, however deep the scene.
 
 #include <array>
 #include <cstdint>
@@ -33,6 +33,12 @@ class TileSource {
   virtual void placeBalls(const RigidMotion& motion, const Cluster& cluster,
                           std::span<const Clusters::Ball> balls, Placement* out) const = 0;
 };
+
+inline constexpr int kCellsPerPixel = 4;  ///< along a side: fine enough for atoms of a fifth of a pixel
+inline constexpr int kTileCells = kTileSize * kCellsPerPixel;
+/// A bit for each cell of a tile, row by row.
+using TileCells = std::array<std::uint32_t, kTileCells>;
+static_assert(kTileCells == 32);
 
 /// The lists of a block of tiles.
 struct TileBlock {
@@ -72,9 +78,9 @@ class TileLists {
   };
   // Of a block while it is filled.
   struct Filling {
-    std::array<std::uint64_t, kTilesPerBlock> covered;  // cells
-    std::array<float, kTilesPerBlock> behind;           // nothing below is seen
-    std::array<float, kTilesPerBlock> farthest;         // of the discs that cover cells
+    std::vector<TileCells> cells;                // covered ones, by tile; empty before the first disc
+    std::array<float, kTilesPerBlock> behind;    // nothing below is seen
+    std::array<float, kTilesPerBlock> farthest;  // of the discs that cover cells
     std::array<std::uint32_t, kTilesPerBlock> counts;
     std::vector<std::uint32_t> tiles, members;  // of the entries, as they came
     int open;                                   // tiles not covered

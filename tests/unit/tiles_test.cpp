@@ -169,6 +169,23 @@ TEST(TileLists, DeepScenesAreCut) {
       << "bounds found by vectors are a little wider";
 }
 
+// Atoms of half a pixel, few of which hide a pixel by themselves.
+TEST(TileLists, SmallAtomsHideTogether) {
+  const auto primitives = test::randomSpheres(100000, 2);
+  const View view = test::viewOf(*primitives, {54, 54}, Projection::perspective);
+  const TileTarget target = targetOf(*primitives, view);
+  const QuadricSource source(*primitives, target);
+  const Occluder nearest = source.occluder(0);
+  EXPECT_GT(nearest.radius, 0.3f);
+  EXPECT_LT(nearest.radius, 0.8f);
+  TileLists cut, whole;
+  const Clusters clusters = clustersOf(*primitives);
+  cut.build(source, clusters, target);
+  whole.build(source, clusters, target, false);
+  EXPECT_LT(cut.entryCount() * 2, whole.entryCount());
+  expectSame(castByLists(*primitives, target), castByForce(*primitives, target), "lists and brute force");
+}
+
 // From afar, close by and from within: bounds of whole clusters against each ball's own.
 TEST_P(Tiles, BallsOfClustersArePlacedAsEachAlone) {
   const auto primitives = test::randomSpheres(20500, 4);
