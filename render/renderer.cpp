@@ -233,8 +233,11 @@ struct Renderer::Impl {
     }
     leaveOutOtherQuadrics(graph, prefix);
     addTriangles(graph, triangles, shaders, gbuffer, prefix);
-    if (drawn == Surfaces::opaque)
-      surfaces.add(graph, shaders, {view, primitives->origin, tile, sampleShift, gbuffer, prefix});
+    if (drawn == Surfaces::opaque) {
+      SurfaceTarget target{view, primitives->origin, tile, sampleShift, gbuffer, prefix};
+      target.first = primitives->onlySurfaces();
+      surfaces.add(graph, shaders, target);
+    }
   }
 
   void leaveOutOtherQuadrics(FrameGraph& graph, const std::string& prefix) {

@@ -42,6 +42,7 @@ struct SurfaceTarget {
   /// SurfaceMethodInfo::translucent are asked for it.
   SurfaceLayerRefs layers = {};
   SurfaceLayerRefs layersBefore = {};  ///< of other surfaces, to be joined, if valid
+  bool first = false;                  ///< nothing is drawn into the G-buffer before
 };
 
 /// Draws one field. What a method draws: the first point on the ray at or behind the near plane at which the

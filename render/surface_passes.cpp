@@ -62,7 +62,11 @@ void SurfacePasses::clear() {
 
 void SurfacePasses::add(FrameGraph& graph, ShaderLibrary& shaders, const SurfaceTarget& target) {
   if (methods_.empty()) graph.leaveOut("pass " + target.prefix + "surface", "the scene has none");
-  for (const auto& method : methods_) method->addPasses(graph, shaders, target);
+  SurfaceTarget next = target;
+  for (const auto& method : methods_) {
+    method->addPasses(graph, shaders, next);
+    next.first = false;
+  }
   if (methods_.empty()) return;
   const std::string reason = surfaceReason(settings_);
   for (const SurfaceMethodInfo& other : surfaceMethods()) {

@@ -4,6 +4,7 @@
 
 #include "core/tiles/instruction_sets.h"
 #include "core/tiles/quadric_source.h"
+#include "render/tile_planes.h"
 
 namespace meniscus {
 
@@ -47,21 +48,8 @@ void TileQuadrics::add(FrameGraph& graph, const View& view, const Tile& tile, gl
   // The framebuffer is bound for nothing but its clearing: the part with no block in it stays background.
   graph.addPass(prefix + "tiles", {}, attachmentsOf(g),
                 [this, &caster, target, g](const PassContext& context) {
-                  caster.cast(target,
-                              {context.isLive(g.albedo), context.isLive(g.normal), context.isLive(g.id),
-                               context.isLive(g.distance)},
-                              planes_);
-                  const auto upload = [&](TextureRef channel, const auto& plane) {
-                    if (!context.isLive(channel)) return;
-                    const tiles::PixelArea& part = planes_.area;
-                    context.texture(channel).write(part.width, part.height, plane.data(),
-                                                   part.x - target.area.x, part.y - target.area.y);
-                  };
-                  upload(g.depth, planes_.depth);
-                  upload(g.albedo, planes_.albedo);
-                  upload(g.normal, planes_.normal);
-                  upload(g.id, planes_.id);
-                  upload(g.distance, planes_.distance);
+                  caster.cast(target, wantedPlanes(context, g), planes_);
+                  writePlanes(context, g, planes_, target.area);
                 });
 }
 

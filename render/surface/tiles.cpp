@@ -3,10 +3,12 @@
 #include <glad/gl.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "core/tiles/field_tiles.h"
 #include "core/tiles/instruction_sets.h"
 #include "render/post/fullscreen.h"
+#include "render/tile_planes.h"
 
 namespace meniscus {
 
@@ -27,8 +29,8 @@ class Tiles : public SurfaceMethod {
   }
 
  private:
-  void draw(const PassContext& context, ShaderLibrary& shaders, tiles::FieldTiles& caster,
-            const tiles::TileTarget& target, const GBufferRefs& g);
+  void drawOver(const PassContext& context, ShaderLibrary& shaders, const tiles::TileTarget& target,
+                const GBufferRefs& g);
 
   std::shared_ptr<const tiles::Clusters> clusters_;
   tiles::FieldTiles camera_, light_;  // lists of the picture outlive a shadow map
@@ -42,17 +44,26 @@ void Tiles::addPasses(FrameGraph& graph, ShaderLibrary& shaders, const SurfaceTa
   const tiles::TileTarget cast{
       target.view, target.origin, {tile.x, tile.y, tile.width, tile.height}, target.sampleShift};
   tiles::FieldTiles& caster = target.prefix.empty() ? camera_ : light_;
-  graph.addPass(target.prefix + "surface", {g.depth}, attachmentsOf(g),
-                [this, &shaders, &caster, cast, g](const PassContext& context) {
-                  draw(context, shaders, caster, cast, g);
+  std::vector<TextureRef> reads;
+  if (!target.first) reads.push_back(g.depth);
+  graph.addPass(target.prefix + "surface", std::move(reads), attachmentsOf(g),
+                [this, &shaders, &caster, cast, g, first = target.first](const PassContext& context) {
+                  caster.cast(cast, wantedPlanes(context, g), planes_);
+                  if (first) {
+                    writePlanes(context, g, planes_, cast.area);
+                    const tiles::PixelArea& part = planes_.area;
+                    mostBytesPerPixel_ = std::max(
+                        mostBytesPerPixel_, static_cast<double>(planes_.bytes()) / part.width / part.height);
+                  } else {
+                    drawOver(context, shaders, cast, g);
+                  }
                 });
 }
 
-void Tiles::draw(const PassContext& context, ShaderLibrary& shaders, tiles::FieldTiles& caster,
-                 const tiles::TileTarget& target, const GBufferRefs& g) {
-  const tiles::PlaneChannels channels{context.isLive(g.albedo), context.isLive(g.normal),
-                                      context.isLive(g.id), context.isLive(g.distance)};
-  caster.cast(target, channels, planes_);
+// The depth test decides against what is there.
+void Tiles::drawOver(const PassContext& context, ShaderLibrary& shaders, const tiles::TileTarget& target,
+                     const GBufferRefs& g) {
+  const tiles::PlaneChannels channels = wantedPlanes(context, g);
   const tiles::PixelArea& part = planes_.area;
   const int x = part.x - target.area.x, y = part.y - target.area.y;
   std::vector<TextureLease> leases;
