@@ -156,9 +156,11 @@ TEST_F(BadInput, hasNothingLeftAfterTheSelection) {
 }
 
 TEST_F(BadInput, wouldTakeMoreMemoryThanThereIs) {
-  expectError(run({"render", "-q", molecule("2hhb.pdb.gz"), "-o", "out.png", "--replicate", "100x100x100"},
+  // Copies of a surface share nothing.
+  expectError(run({"render", "-q", molecule("2hhb.pdb.gz"), "-o", "out.png", "--replicate", "100x100x100",
+                   "--representation", "surface"},
                   kNoGraphics),
-              ExitCode::badInput, {"2hhb.pdb.gz", "1000000 copies", "more than the", "fewer copies"});
+              ExitCode::badInput, {"2hhb.pdb.gz", "1000000 copies", "GB of memory", "fewer copies"});
 }
 
 class BadOutput : public CliTest {

@@ -5,6 +5,8 @@
 #include "app/option_values.h"
 #include "app/scene/archive.h"
 #include "app/scene/settings.h"
+#include "app/structure_pictures.h"
+#include "core/error.h"
 #include "tests/support/paths.h"
 #include "tests/unit/scene_files.h"
 
@@ -90,12 +92,24 @@ TEST_F(SceneErrors, wrongTypesAndKindsAreNamed) {
 
 // Before the memory is taken: the system would end the process without a word.
 TEST_F(SceneErrors, copiesThatDoNotFitIntoMemoryAreRefused) {
-  for (const Json& component : {shown("all"), node("component", {{"selector", "all"}},
-                                                   {node("focus"), shown("all")["children"][0]})}) {
+  Json surface = shown("all");  // whose copies share nothing
+  surface["children"][0]["params"]["type"] = "surface";
+  for (const Json& component :
+       {surface, node("component", {{"selector", "all"}}, {surface["children"][0], node("focus")})}) {
     Json scene = structureScene("2hhb.pdb.gz", {component});
     Json& structure = scene["root"]["children"][0]["children"][0]["children"][0];
     structure = withCustom(structure, {{"replicate", "100x100x100"}});
-    expectParts(errorOf(scene), {"'fig.mvsj'", "more than the"});
+    expectParts(errorOf(scene), {"'fig.mvsj'", "GB of memory, more than there is"});
+  }
+}
+
+TEST_F(SceneErrors, moreAtomsThanCanBeToldApartAreRefused) {
+  EXPECT_NO_THROW(requireIds("a.pdb", 4294967294.0, 4294967294.0));
+  try {
+    requireIds("a.pdb", 5000, 5e9);
+    ADD_FAILURE() << "not refused";
+  } catch (const InputError& error) {
+    expectParts(error.what(), {"'a.pdb': 1000000 copies of 5000 atoms", "4,294,967,294", "--select"});
   }
 }
 
