@@ -1,6 +1,5 @@
 #include "app/view/light_widgets.h"
 
-#include <fmt/format.h>
 #include <imgui.h>
 
 #include "app/picture_drawer.h"
@@ -22,11 +21,8 @@ void traceWidgets(Document& document, const TraceSettings& trace) {
   if (!trace.light()) return;
   optionSlider(document, "refractive index", "refractive-index", trace.index, 1, kMostUsualIndex, "%.2f");
   if (trace.refract > 0) {
-    Rgb color = trace.attenuationColor;
-    if (colorEdit("colour of the glass", color))
-      document.set("attenuation-color", fmt::format("#{:06X}", color), true);
-    if (ImGui::IsItemDeactivatedAfterEdit()) document.endChange();
-    if (color != kClear)
+    optionColor(document, "colour of the glass", "attenuation-color", trace.attenuationColor);
+    if (trace.attenuationColor != kClear)
       optionSlider(document, "deep", "attenuation-distance", trace.attenuationDistance, kLeastUsualWay,
                    kMostUsualWay, "%.1f Å", true);
   }

@@ -112,6 +112,11 @@ bool coloringCombo(const char* label, std::string& word) {
   return changed;
 }
 
+void optionColor(Document& document, const char* label, const char* option, Rgb shown) {
+  if (colorEdit(label, shown)) document.set(option, fmt::format("#{:06X}", shown), true);
+  if (ImGui::IsItemDeactivatedAfterEdit()) document.endChange();
+}
+
 bool colorEdit(const char* label, Rgb& color) {
   const auto channel = [&](int shift) { return static_cast<float>((color >> shift) & 0xFFu) / 255.0f; };
   std::array<float, 3> rgb{channel(16), channel(8), channel(0)};

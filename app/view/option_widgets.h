@@ -17,6 +17,9 @@ void optionSlider(Document& document, const char* label, const char* option, dou
                   double most, const char* form, bool logarithmic = false);
 void optionSlider(Document& document, const char* label, const char* option, int shown, int least, int most);
 
+/// A colour; one step from the first movement of the mouse to its release.
+void optionColor(Document& document, const char* label, const char* option, Rgb shown);
+
 /// An option of two words.
 void optionCheck(Document& document, const char* label, const char* option, bool shown, const char* on,
                  const char* off);

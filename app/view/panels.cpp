@@ -214,9 +214,7 @@ void effectsPanel(Viewer& viewer, const RenderOptions& o) {
     ImGui::EndCombo();
   }
   ImGui::SameLine();
-  Rgb color = o.background.color;
-  if (colorEdit("##background", color)) document.set("background", fmt::format("#{:06X}", color), true);
-  if (ImGui::IsItemDeactivatedAfterEdit()) document.endChange();
+  optionColor(document, "##background", "background", o.background.color);
 }
 
 void surfaceStats(const Viewer& viewer) {
