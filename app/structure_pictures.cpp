@@ -389,7 +389,7 @@ double bytesOfCopies(const Molecule& molecule, const std::vector<std::uint32_t>&
                      double lattice) {
   const double placed = lattice * placedAtomCount(molecule, atoms, placements);
   const double apart = bytesPerAtom(representation) * placed;
-  if (representation == Representation::surface || followsBackbone(representation)) return apart;
+  if (!drawsQuadrics(representation)) return apart;
   std::vector<Placement> once;
   for (const std::vector<std::uint32_t>& alike : alikePlacements(placements))
     once.push_back(placements[alike.front()]);

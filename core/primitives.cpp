@@ -150,11 +150,6 @@ glm::dvec3 middleOf(const Scene& scene) {
   return all.empty() ? glm::dvec3(0.0) : all.middle();
 }
 
-// Whether an object's atoms are drawn one by one, as quadrics.
-bool drawsQuadrics(Representation representation) {
-  return representation != Representation::surface && !followsBackbone(representation);
-}
-
 // How the atoms of an object look, wherever it stands.
 struct Look {
   std::vector<Rgb> colors;
@@ -332,6 +327,10 @@ bool needsBonds(Representation representation) {
          !followsBackbone(representation);
 }
 
+bool drawsQuadrics(Representation representation) {
+  return representation != Representation::surface && !followsBackbone(representation);
+}
+
 Primitives buildPrimitives(const Scene& scene, LineGroups groups, Copies copies) {
   Primitives out;
   out.origin = middleOf(scene);
@@ -371,8 +370,7 @@ Primitives buildPrimitives(const Scene& scene, LineGroups groups, Copies copies)
     if (grouped) out.groups.push_back(nextGroup++);
     addDashes(line, nextId++, out);
   }
-  const QuadricCounts all = out.counts();
-  if (all.spheres + all.cylinders + all.ellipsoids > std::numeric_limits<std::uint32_t>::max()) {
+  if (out.counts().all() > std::numeric_limits<std::uint32_t>::max()) {
     throw InputError(
         "the scene has more than 4,294,967,295 atoms and bonds; draw a part of it (--select, fewer copies)");
   }

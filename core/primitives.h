@@ -47,6 +47,7 @@ struct EllipsoidPrimitive {
 
 struct QuadricCounts {
   std::size_t spheres = 0, cylinders = 0, ellipsoids = 0;
+  std::size_t all() const { return spheres + cylinders + ellipsoids; }
 };
 
 struct Quadrics {
@@ -120,6 +121,8 @@ std::optional<PlacedAtom> atomOfId(const Scene& scene, std::uint32_t id);
 
 /// Whether an object's representation draws bonds; if none does, nobody needs to find them.
 bool needsBonds(Representation representation);
+/// Whether its atoms are drawn one by one, as quadrics, whose copies may share their memory.
+bool drawsQuadrics(Representation representation);
 
 /// The spheres that a camera must fit to show the whole object: its atoms in every placement with the radius
 /// that is drawn; of `atoms` only (indices into the molecule, ascending) if that is not empty.

@@ -221,15 +221,14 @@ struct Renderer::Impl {
   // been called alike.
   void addScene(FrameGraph& graph, const View& view, const Tile& tile, glm::vec2 sampleShift,
                 const GBufferRefs& gbuffer, Surfaces drawn, const std::string& prefix = {}) {
-    switch (quadricChoice.method) {
-      case QuadricMethod::tiles:
-        tileQuadrics.add(graph, view, tile, sampleShift, gbuffer, prefix);
-        break;
-      case QuadricMethod::tilesGlsl:
-        glslTileQuadrics.add(graph, shaders, view, tile, sampleShift, gbuffer, prefix);
-        break;
-      default:
-        addQuadrics(graph, quadrics, shaders, gbuffer, prefix);
+    if (quadricChoice.method == QuadricMethod::splat) {
+      addQuadrics(graph, quadrics, shaders, gbuffer, prefix);
+    } else if (primitives->noQuadrics()) {
+      graph.leaveOut("pass " + prefix + "tiles", "the scene has no quadrics");
+    } else if (quadricChoice.method == QuadricMethod::tiles) {
+      tileQuadrics.add(graph, view, tile, sampleShift, gbuffer, prefix);
+    } else {
+      glslTileQuadrics.add(graph, shaders, view, tile, sampleShift, gbuffer, prefix);
     }
     leaveOutOtherQuadrics(graph, prefix);
     addTriangles(graph, triangles, shaders, gbuffer, prefix);

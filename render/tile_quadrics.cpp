@@ -37,10 +37,6 @@ void TileQuadrics::prepare() {
 
 void TileQuadrics::add(FrameGraph& graph, const View& view, const Tile& tile, glm::vec2 sampleShift,
                        const GBufferRefs& g, const std::string& prefix) {
-  if (primitives_->noQuadrics()) {
-    graph.leaveOut("pass " + prefix + "tiles", "the scene has no quadrics");
-    return;
-  }
   const tiles::TileTarget target{
       view, primitives_->origin, {tile.x, tile.y, tile.width, tile.height}, sampleShift};
   prepare();

@@ -25,8 +25,8 @@ class TileQuadrics {
   /// What to draw; gives up the lists of what was drawn before.
   void setPrimitives(std::shared_ptr<const Primitives> primitives);
 
-  /// Adds one pass for all kinds of quadrics, which replaces what the channels hold; none if the scene has no
-  /// quadrics. `this` must live until the graph was executed. `prefix` goes before the pass's name.
+  /// Adds one pass for all kinds of quadrics, of which there must be any; it replaces what the channels hold.
+  /// `this` must live until the graph was executed. `prefix` goes before the pass's name.
   void add(FrameGraph& graph, const View& view, const Tile& tile, glm::vec2 sampleShift,
            const GBufferRefs& gbuffer, const std::string& prefix = {});
 

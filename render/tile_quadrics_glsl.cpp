@@ -86,10 +86,6 @@ void GlslTileQuadrics::update(Lists& lists, const tiles::TileTarget& target) {
 
 void GlslTileQuadrics::add(FrameGraph& graph, ShaderLibrary& shaders, const View& view, const Tile& tile,
                            glm::vec2 sampleShift, const GBufferRefs& g, const std::string& prefix) {
-  if (primitives_->noQuadrics()) {
-    graph.leaveOut("pass " + prefix + "tiles", "the scene has no quadrics");
-    return;
-  }
   Lists& lists = prefix.empty() ? camera_ : light_;
   const tiles::TileTarget target{
       view, primitives_->origin, {tile.x, tile.y, tile.width, tile.height}, sampleShift};

@@ -20,7 +20,7 @@ class GlslTileQuadrics {
   /// What to draw; gives up the lists of what was drawn before.
   void setPrimitives(std::shared_ptr<const Primitives> primitives);
 
-  /// Adds one pass for all kinds of quadrics; none if the scene has no quadrics. The view's uniform block
+  /// Adds one pass for all kinds of quadrics, of which there must be any. The view's uniform block
   /// must be bound, `this` live until the graph was executed. `prefix` goes before the pass's name.
   void add(FrameGraph& graph, ShaderLibrary& shaders, const View& view, const Tile& tile,
            glm::vec2 sampleShift, const GBufferRefs& gbuffer, const std::string& prefix = {});

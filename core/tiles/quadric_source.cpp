@@ -52,8 +52,7 @@ Clusters::Ball ballOf(const Quadrics& quadrics, std::size_t index) {
 
 Clusters clustersOf(const Primitives& primitives) {
   Clusters clusters;
-  const QuadricCounts all = primitives.counts();
-  if (!Clusters::worthwhile(all.spheres + all.cylinders + all.ellipsoids)) return clusters;
+  if (!Clusters::worthwhile(primitives.counts().all())) return clusters;
   forSets(primitives, [&](const Quadrics& quadrics, std::span<const QuadricCopy> copies) {
     std::vector<RigidMotion> motions;
     for (const QuadricCopy& copy : copies) motions.push_back(copy.motion);

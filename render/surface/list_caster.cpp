@@ -81,6 +81,13 @@ void ListCaster::setUniforms(const ListTarget& target, const ScreenRect& region,
   uniforms_.update(&block);
 }
 
+void ListCaster::clearCores(const ListTarget& target, const ListRegion& region) const {
+  const float farthest = 1.0f;
+  glBindFramebuffer(GL_FRAMEBUFFER, target.context.pool().framebuffer({}, region.cores.get()));
+  glViewport(0, 0, region.rect.width, region.rect.height);
+  glClearBufferfv(GL_DEPTH, 0, &farthest);
+}
+
 void ListCaster::layHidden(const ListTarget& target) const {
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LESS);

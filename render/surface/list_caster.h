@@ -50,7 +50,9 @@ class ListCaster {
   void setUniforms(const ListTarget& target, const ScreenRect& region, std::int64_t nodes, bool goOn = false);
   /// For lists of tiles: TileListBuffers::grid().
   void setGrid(const glm::ivec4& grid) { grid_ = grid; }
-  /// Lays what is drawn already into the region's cores, over what is in them; their framebuffer is bound.
+  /// Binds the region's cores to be drawn into, and clears them: they hide nothing.
+  void clearCores(const ListTarget& target, const ListRegion& region) const;
+  /// Lays what is drawn already into the cores that are bound, over what is in them.
   void layHidden(const ListTarget& target) const;
   /// Draws a part of the region; the lists are bound.
   void draw(const ListTarget& target, const ListRegion& region, const ScreenRect& part, std::int64_t nodes);

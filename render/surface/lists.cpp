@@ -185,11 +185,7 @@ void Lists::drawBalls(unsigned program, int first, int step, int count) const {
 
 // What hides the rest: cores, unless a ray begins in a ball, and what is drawn already.
 void Lists::layCores(const Frame& frame, const Region& region) {
-  const ScreenRect& rect = region.list.rect;
-  const float farthest = 1.0f;
-  glBindFramebuffer(GL_FRAMEBUFFER, frame.target.context.pool().framebuffer({}, region.list.cores.get()));
-  glViewport(0, 0, rect.width, rect.height);
-  glClearBufferfv(GL_DEPTH, 0, &farthest);
+  caster_.clearCores(frame.target, region.list);
   glEnable(GL_DEPTH_TEST);
   const auto program = [&](const ShaderFlags& flags) {
     return frame.target.shaders.program("surface/lists_balls.vert", "surface/lists_balls.frag", flags);

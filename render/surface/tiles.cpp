@@ -49,11 +49,12 @@ void Tiles::addPasses(FrameGraph& graph, ShaderLibrary& shaders, const SurfaceTa
   graph.addPass(target.prefix + "surface", std::move(reads), attachmentsOf(g),
                 [this, &shaders, &caster, cast, g, first = target.first](const PassContext& context) {
                   caster.cast(cast, wantedPlanes(context, g), planes_);
+                  // In main memory, and for drawOver() in textures, too.
+                  const double bytes =
+                      static_cast<double>(planes_.bytes()) / planes_.area.width / planes_.area.height;
+                  mostBytesPerPixel_ = std::max(mostBytesPerPixel_, first ? bytes : 2 * bytes);
                   if (first) {
                     writePlanes(context, g, planes_, cast.area);
-                    const tiles::PixelArea& part = planes_.area;
-                    mostBytesPerPixel_ = std::max(
-                        mostBytesPerPixel_, static_cast<double>(planes_.bytes()) / part.width / part.height);
                   } else {
                     drawOver(context, shaders, cast, g);
                   }
@@ -67,20 +68,17 @@ void Tiles::drawOver(const PassContext& context, ShaderLibrary& shaders, const t
   const tiles::PixelArea& part = planes_.area;
   const int x = part.x - target.area.x, y = part.y - target.area.y;
   std::vector<TextureLease> leases;
-  double bytes = 0;
   // As large as the target, of which the part is a different one in every view.
   const auto bind = [&](const char* name, gl::TextureFormat format, unsigned unit, const void* data) {
     leases.push_back(context.pool().lease(name, {format, target.area.width, target.area.height}));
     leases.back()->write(part.width, part.height, data, x, y);
     glBindTextureUnit(unit, leases.back()->object.name());
-    bytes += 2 * gl::bytesPerTexel(format);  // in main memory, too
   };
   bind("surface depth", gl::TextureFormat::r32f, 0, planes_.depth.data());
   if (channels.albedo) bind("surface albedo", gl::TextureFormat::rgba8, 1, planes_.albedo.data());
   if (channels.normal) bind("surface normal", gl::TextureFormat::rg16, 2, planes_.normal.data());
   if (channels.id) bind("surface id", gl::TextureFormat::r32ui, 3, planes_.id.data());
   if (channels.distance) bind("surface distance", gl::TextureFormat::r32f, 4, planes_.distance.data());
-  mostBytesPerPixel_ = std::max(mostBytesPerPixel_, bytes);
   context.bindTarget();
   glEnable(GL_SCISSOR_TEST);
   glScissor(x, y, part.width, part.height);

@@ -1,7 +1,5 @@
 #include "render/surface/tiles_glsl.h"
 
-#include <glad/gl.h>
-
 #include <algorithm>
 
 #include "render/surface/list_caster.h"
@@ -80,10 +78,7 @@ void TilesGlsl::draw(const PassContext& context, ShaderLibrary& shaders, const S
     for (const ScreenRect& in : splitRect(occupied, kListRegionPixels)) {
       const ListRegion region = caster_.begin(drawn, in);
       lists.bind();
-      const float farthest = 1.0f;
-      glBindFramebuffer(GL_FRAMEBUFFER, context.pool().framebuffer({}, region.cores.get()));
-      glViewport(0, 0, in.width, in.height);
-      glClearBufferfv(GL_DEPTH, 0, &farthest);
+      caster_.clearCores(drawn, region);
       caster_.layHidden(drawn);
       caster_.draw(drawn, region, {0, 0, in.width, in.height}, 0);
       ++statistics.bands;
