@@ -96,6 +96,10 @@ bool PassContext::isLive(TextureRef ref) const {
   return ref.valid() && graph_.resources_[static_cast<std::size_t>(ref.index)].live;
 }
 
+bool PassContext::isInMemory(TextureRef ref) const {
+  return graph_.resources_[static_cast<std::size_t>(ref.index)].inMemory;
+}
+
 TexturePool& PassContext::pool() const {
   return graph_.pool_;
 }
@@ -117,6 +121,11 @@ FrameGraph::~FrameGraph() {
 
 TextureRef FrameGraph::create(std::string name, const gl::TextureDesc& desc, Clear clear) {
   resources_.push_back({.name = std::move(name), .desc = desc, .clear = clear});
+  return {static_cast<int>(resources_.size()) - 1};
+}
+
+TextureRef FrameGraph::createInMemory(std::string name) {
+  resources_.push_back({.name = std::move(name), .desc = {}, .inMemory = true});
   return {static_cast<int>(resources_.size()) - 1};
 }
 
@@ -180,7 +189,7 @@ void FrameGraph::clearAttachment(unsigned framebuffer, Resource& resource, int l
 
 // Gives a texture that is read but was never written its initial contents.
 void FrameGraph::materialize(Resource& resource) {
-  if (resource.written || resource.imported) return;
+  if (resource.written || resource.imported || resource.inMemory) return;
   resource.pooled = pool_.acquire(resource.name, resource.desc);
   const bool depth = resource.desc.format == gl::TextureFormat::depth32f;
   const unsigned framebuffer =
@@ -201,7 +210,7 @@ void FrameGraph::run(Pass& pass) {
   gl::TextureDesc size;
   for (const Attachment& a : pass.writes) {
     Resource& resource = resources_[static_cast<std::size_t>(a.texture.index)];
-    if (!resource.live) continue;
+    if (!resource.live || resource.inMemory) continue;
     if (!resource.imported && !resource.pooled) resource.pooled = pool_.acquire(resource.name, resource.desc);
     const gl::Texture* texture = resource.imported ? resource.imported : resource.pooled;
     size = texture->desc;
@@ -213,12 +222,13 @@ void FrameGraph::run(Pass& pass) {
       colors[location] = texture;
     }
   }
-  const unsigned framebuffer = pool_.framebuffer(colors, depth);
+  const bool draws = !colors.empty() || depth != nullptr;
+  const unsigned framebuffer = draws ? pool_.framebuffer(colors, depth) : 0;
   const PassContext context(*this, framebuffer, size.width, size.height);
-  context.bindTarget();
+  if (draws) context.bindTarget();
   for (const Attachment& a : pass.writes) {
     Resource& resource = resources_[static_cast<std::size_t>(a.texture.index)];
-    if (!resource.live || a.location == kTestedDepth) continue;
+    if (!resource.live || resource.inMemory || a.location == kTestedDepth) continue;
     clearAttachment(framebuffer, resource, a.location);
     resource.written = true;
   }

@@ -57,12 +57,14 @@ enum class Clear : std::uint8_t { zero, infinity, none };
 
 class FrameGraph;
 
-/// What a pass sees while it runs: its framebuffer is bound, its viewport set.
+/// What a pass sees while it runs: its framebuffer, if it draws into textures, is bound, its viewport set.
 class PassContext {
  public:
   const gl::Texture& texture(TextureRef ref) const;
   /// Whether anybody wants this texture; if not it does not exist.
   bool isLive(TextureRef ref) const;
+  /// Whether it has no texture.
+  bool isInMemory(TextureRef ref) const;
   /// For textures and framebuffers that a pass needs within itself.
   TexturePool& pool() const;
   /// Binds the pass's framebuffer and viewport again, after others were bound.
@@ -83,6 +85,7 @@ class FrameGraph {
  public:
   static constexpr int kDepth = -1;
   static constexpr int kTestedDepth = -2;  ///< depth that is only tested: attached, but not written
+  static constexpr int kInMemory = -3;     ///< of createInMemory(): not attached
   struct Attachment {
     TextureRef texture;
     int location;  ///< fragment output location, kDepth or kTestedDepth
@@ -91,6 +94,8 @@ class FrameGraph {
   explicit FrameGraph(TexturePool& pool) : pool_(pool) {}
 
   TextureRef create(std::string name, const gl::TextureDesc& desc, Clear clear = Clear::zero);
+  /// Something that passes keep in main memory themselves: the graph knows who needs it, and has no texture.
+  TextureRef createInMemory(std::string name);
   /// A texture of somebody else's; it must outlive execute().
   TextureRef import(std::string name, const gl::Texture& texture, Clear clear);
   /// All attachments of a pass have the same size. A pass that tests depth names it among its reads, too.
@@ -118,6 +123,7 @@ class FrameGraph {
     Clear clear = Clear::zero;
     const gl::Texture* imported = nullptr;
     gl::Texture* pooled = nullptr;
+    bool inMemory = false;
     bool wanted = false, live = false, written = false;
     int lastUse = -1;
   };

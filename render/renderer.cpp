@@ -122,7 +122,22 @@ struct Frame {
   int margin = 0;                    // of a tile: how far its pixels' effects look [pixels]
   bool translucent = false;          // surfaces are laid over the rest, layer by layer
   bool traced = false;               // some of the light
+  bool processorShades = false;
   std::function<void()> watch = {};  // is called now and then while a pass takes long; may throw
+};
+
+// Where a tile's picture goes: into a texture, or where the processor shades into main memory.
+struct PictureTarget {
+  const gl::Texture* texture = nullptr;
+  effects::PictureRows rows = {};  // in the tile with its margin
+};
+
+// Where the light of a sample goes: to be the picture, or to be added to a sum.
+struct LightTarget {
+  const char* name;
+  const gl::Texture* texture = nullptr;
+  Clear clear = Clear::none;
+  ProcessorShadeTarget memory = {};
 };
 
 // What becomes of the surfaces of a scene.
@@ -174,6 +189,7 @@ struct Renderer::Impl {
   // Memory that one picture after the other uses: fresh pages for every frame cost more than what is written.
   std::shared_ptr<std::vector<float>> shadowHeights;
   std::vector<std::byte> band;
+  effects::LightSum lightSum;
   std::shared_ptr<const Primitives> primitives = std::make_shared<Primitives>();
   // The same; made when they are wanted first.
   std::shared_ptr<const Primitives> copiesApart, withoutSurfaces;
@@ -254,12 +270,12 @@ struct Renderer::Impl {
 
   // One sample of one tile: every pass of the program is named here.
   GBufferRefs buildFrame(FrameGraph& graph, const Frame& frame, const Tile& tile, glm::vec2 sampleShift,
-                         TextureRef target) {
+                         const LightTarget& target) {
     const f32::ViewBlock block = setView(frame.view, tile, sampleShift);
     const GBufferRefs gbuffer = createGBuffer(graph, tile.width, tile.height);
     addScene(graph, frame.view, tile, sampleShift, gbuffer,
              frame.translucent ? Surfaces::apart : Surfaces::opaque);
-    surfaceReader.begin(block, tile.width, tile.height);
+    surfaceReader.begin(block, tile.width, tile.height, frame.processorShades);
     SurfaceReader* const reader = effects.processor ? &surfaceReader : nullptr;
     LightRefs light;
     if (frame.traced) {
@@ -304,14 +320,22 @@ struct Renderer::Impl {
     } else {
       graph.leaveOut("pass labels", "there are none in the picture");
     }
-    if (frame.translucent) {
-      addShadeUnderLayers(graph, frame, tile, sampleShift, gbuffer, light, over, target);
-    } else {
+    if (!frame.translucent) {
       graph.leaveOut("pass translucent", "no surface is translucent");
       light.labels = over;
-      addShade(graph, frame.shade, shadeUniforms, shaders, gbuffer, light, target);
     }
-    graph.want(target);
+    if (frame.processorShades) {
+      graph.leaveOut("program of shade", effects.reason);
+      graph.want(addProcessorShade(graph, shadeUniforms, surfaceReader, gbuffer, light, target.memory));
+      return gbuffer;
+    }
+    const TextureRef texture = graph.import(target.name, *target.texture, target.clear);
+    if (frame.translucent) {
+      addShadeUnderLayers(graph, frame, tile, sampleShift, gbuffer, light, over, texture);
+    } else {
+      addShade(graph, frame.shade, shadeUniforms, shaders, gbuffer, light, texture);
+    }
+    graph.want(texture);
     return gbuffer;
   }
 
@@ -332,11 +356,11 @@ struct Renderer::Impl {
   void drawShadowMap(Frame& frame);
   void drawOcclusion(Frame& frame, const std::function<void(double)>& progress);
   void setEffects(Frame& frame);
-  void drawTile(const Frame& frame, const Tile& part, const gl::Texture& picture, LayerTexels& texels,
+  void drawTile(const Frame& frame, const Tile& part, const PictureTarget& picture, LayerTexels& texels,
                 const std::function<void(double)>& progress);
   void drawData(const Frame& frame, const Tile& tile, LayerTexels& texels);
-  void resolve(const Frame& frame, int samples, const gl::Texture& sum, const gl::Texture& picture);
-  void showPreview(const Frame& frame, const Tile& tile, const gl::Texture& picture, int samples);
+  void resolve(const Frame& frame, int samples, const gl::Texture* sum, const PictureTarget& picture);
+  void showPreview(const Frame& frame, const gl::Texture* sum, const PictureTarget& picture, int samples);
   void execute(FrameGraph& graph) { graph.execute(stats, options.timePasses); }
 };
 
@@ -468,8 +492,8 @@ void Renderer::Impl::drawData(const Frame& frame, const Tile& tile, LayerTexels&
   readLayers(graph, frame.layers, gbuffer, tile, texels);
 }
 
-// `picture` gets the margin of `part`, too. Data comes with the colour where both need the same rays.
-void Renderer::Impl::drawTile(const Frame& frame, const Tile& part, const gl::Texture& picture,
+// A texture gets the margin of `part`, too. Data comes with the colour where both need the same rays.
+void Renderer::Impl::drawTile(const Frame& frame, const Tile& part, const PictureTarget& picture,
                               LayerTexels& texels, const std::function<void(double)>& progress) {
   const Tile tile = withMargin(part, frame.margin, frame.view.size);
   const bool dataApart = !frame.shade.final || tile != part || frame.translucent;
@@ -487,46 +511,65 @@ void Renderer::Impl::drawTile(const Frame& frame, const Tile& part, const gl::Te
     FrameGraph graph(pool);
     graph.leaveOut("pass resolve", "one sample per pixel");
     const GBufferRefs gbuffer =
-        buildFrame(graph, frame, tile, {0, 0}, graph.import("picture", picture, Clear::none));
+        buildFrame(graph, frame, tile, {0, 0},
+                   {.name = "picture", .texture = picture.texture, .memory = {.picture = picture.rows}});
     if (!dataApart) wantLayers(graph, frame.layers, gbuffer);
     execute(graph);
     if (!dataApart) readLayers(graph, frame.layers, gbuffer, tile, texels);
     return;
   }
-  const TextureLease sum = pool.lease("sum", {gl::TextureFormat::rgba32f, tile.width, tile.height});
+  TextureLease sum(nullptr, ReturnToPool{});
+  if (!frame.processorShades) sum = pool.lease("sum", {gl::TextureFormat::rgba32f, tile.width, tile.height});
+  const bool whole = part.width == frame.view.size.width && part.height == frame.view.size.height;
   for (int i = 0; i < samples; ++i) {
     setShadow(i);
     FrameGraph graph(pool);
     buildFrame(graph, frame, tile, sampleOffset(i, samples),
-               graph.import("sum", *sum, i == 0 ? Clear::zero : Clear::none));
+               {.name = "sum",
+                .texture = sum.get(),
+                .clear = i == 0 ? Clear::zero : Clear::none,
+                .memory = {.sum = &lightSum, .sample = i}});
     execute(graph);
     progress((i + 1.0) / samples);
-    const bool whole = part.width == frame.view.size.width && part.height == frame.view.size.height;
-    if (i + 1 < samples && whole && !frame.layers.data() && preview.wanted && preview.wanted()) {
-      resolve(frame, i + 1, *sum, picture);
-      showPreview(frame, tile, picture, i + 1);
-    }
+    if (i + 1 < samples && whole && !frame.layers.data() && preview.wanted && preview.wanted())
+      showPreview(frame, sum.get(), picture, i + 1);
   }
-  resolve(frame, samples, *sum, picture);
+  resolve(frame, samples, sum.get(), picture);
 }
 
-void Renderer::Impl::resolve(const Frame& frame, int samples, const gl::Texture& sum,
-                             const gl::Texture& picture) {
+void Renderer::Impl::resolve(const Frame& frame, int samples, const gl::Texture* sum,
+                             const PictureTarget& picture) {
   FrameGraph graph(pool);
-  const TextureRef target = graph.import("picture", picture, Clear::none);
-  addResolve(graph, {samples, backdrop(frame.shade.background), frame.shade.encodeSrgb}, shaders,
-             graph.import("sum", sum, Clear::none), target);
+  const glm::vec4 behind = backdrop(frame.shade.background);
+  TextureRef target;
+  if (frame.processorShades) {
+    graph.leaveOut("program of resolve", effects.reason);
+    target = graph.createInMemory("rows");
+    graph.addPass("resolve", {}, {{target, FrameGraph::kInMemory}}, [&](const PassContext&) {
+      effects::writePicture(lightSum, samples, behind, picture.rows);
+    });
+  } else {
+    target = graph.import("picture", *picture.texture, Clear::none);
+    addResolve(graph, {samples, behind, frame.shade.encodeSrgb}, shaders,
+               graph.import("sum", *sum, Clear::none), target);
+  }
   graph.want(target);
   execute(graph);
 }
 
 // Of the whole picture, which has no margin, because nothing lies beyond it.
-void Renderer::Impl::showPreview(const Frame& frame, const Tile& tile, const gl::Texture& picture,
+void Renderer::Impl::showPreview(const Frame& frame, const gl::Texture* sum, const PictureTarget& picture,
                                  int samples) {
-  MENISCUS_CHECK(tile.x == 0 && tile.y == 0 && picture.bytes() % static_cast<std::size_t>(tile.height) == 0);
-  std::vector<std::byte> rows(picture.bytes());
-  picture.read(tile.width, tile.height, frame.view.size.width, rows.data());
-  const std::size_t rowBytes = rows.size() / static_cast<std::size_t>(tile.height);
+  const auto width = static_cast<std::size_t>(frame.view.size.width),
+             height = static_cast<std::size_t>(frame.view.size.height);
+  PictureTarget shown = picture;
+  shown.rows.rowBytes = width * bytesPerPixel(picture.rows.format);
+  std::vector<std::byte> rows(shown.rows.rowBytes * height);
+  shown.rows.first = rows.data();
+  resolve(frame, samples, sum, shown);
+  if (shown.texture != nullptr)
+    shown.texture->read(frame.view.size.width, frame.view.size.height, frame.view.size.width, rows.data());
+  const std::size_t rowBytes = shown.rows.rowBytes;
   for (std::size_t low = 0, high = rows.size() - rowBytes; low < high; low += rowBytes, high -= rowBytes)
     std::swap_ranges(rows.begin() + static_cast<std::ptrdiff_t>(low),
                      rows.begin() + static_cast<std::ptrdiff_t>(low + rowBytes),
@@ -551,6 +594,7 @@ void Renderer::renderPicture(const View& view, const Lighting& lighting, const B
               {}};
   const bool color = layout.layers.color;
   frame.translucent = settings.surface.translucent() && !r.primitives->surfaces.empty();
+  frame.processorShades = color && r.effects.processor && !frame.translucent;
   const bool anyOpaque = !r.primitives->empty() && !(frame.translucent && r.primitives->onlySurfaces());
   if (color) r.setEffects(frame);
   r.shadeUniforms.set(frame.shade);
@@ -593,16 +637,24 @@ void Renderer::renderPicture(const View& view, const Lighting& lighting, const B
       const Tile tile{x, top - height, std::min(tileSize.width, view.size.width - x), height};
       const Tile drawnTile = withMargin(tile, frame.margin, view.size);
       const int cropX = tile.x - drawnTile.x, cropY = tile.y - drawnTile.y;
-      TextureLease picture(nullptr, ReturnToPool{});
-      if (color) {
-        picture = r.pool.lease("picture", {textureFormat(layout.format), drawnTile.width, drawnTile.height});
-      }
+      TextureLease texture(nullptr, ReturnToPool{});
+      if (color && !frame.processorShades)
+        texture = r.pool.lease("picture", {textureFormat(layout.format), drawnTile.width, drawnTile.height});
+      // Of data, the pixels are assembled afterwards.
+      std::byte* const here = band.data() + pixelBytes * static_cast<std::size_t>(x);
+      const auto width = static_cast<std::size_t>(tile.width);
+      if (layout.layers.data())
+        colors.resize(color ? bytesPerPixel(layout.format) * width * static_cast<std::size_t>(height) : 0);
+      const PictureTarget picture{texture.get(),
+                                  {cropX, cropY, tile.width, tile.height, layout.format,
+                                   layout.layers.data() ? colors.data() : here,
+                                   layout.layers.data() ? bytesPerPixel(layout.format) * width : rowBytes}};
       {
         Stopwatch watch(r.stats.drawMs);
         const double share = static_cast<double>(tile.width) * tile.height / pixels;
         const auto drawnOfTile = [&](double done) { tell(drawn + share * done); };
         if (color) {
-          r.drawTile(frame, tile, *picture, texels, drawnOfTile);
+          r.drawTile(frame, tile, picture, texels, drawnOfTile);
         } else {
           r.drawData(frame, tile, texels);
         }
@@ -610,14 +662,11 @@ void Renderer::renderPicture(const View& view, const Lighting& lighting, const B
         drawn += share;
       }
       Stopwatch watch(r.stats.readbackMs);
-      if (layout.layers.data()) {
-        colors.resize(color ? picture->bytes() : 0);
-        if (color) picture->read(tile.width, tile.height, tile.width, colors.data(), cropX, cropY);
-        storeLayers(layout, view, tile, texels, colors, band.data());
-      } else {
-        picture->read(tile.width, tile.height, view.size.width,
-                      band.data() + pixelBytes * static_cast<std::size_t>(x), cropX, cropY);
-      }
+      if (texture != nullptr)
+        texture->read(tile.width, tile.height,
+                      static_cast<int>(picture.rows.rowBytes / bytesPerPixel(layout.format)),
+                      picture.rows.first, cropX, cropY);
+      if (layout.layers.data()) storeLayers(layout, view, tile, texels, colors, band.data());
       ++r.stats.tiles;
     }
     for (int y = height; y-- > 0;) {

@@ -24,25 +24,22 @@ HWY_INLINE V pixelCenters(int x) {
   return hn::Iota(F(), static_cast<float>(x)) + all(0.5f);
 }
 
-// Of the pixels (x, y), (x + 1, y), ... from `at` on.
-HWY_INLINE Surfaces surfacesAt(const SurfacePlanes& planes, std::size_t at, int x, int y) {
+// Where the rays through pixels cross the plane at unit depth (perspective), or their places [Å].
+struct Slopes {
+  V x, y;
+};
+// Of the pixels (x, y), (x + 1, y), ... of the planes.
+HWY_INLINE Slopes slopesAt(const SurfacePlanes& planes, int x, int y) {
+  const f32::ViewBlock& view = planes.view;
+  return {(pixelCenters(planes.x + x) + all(view.tile.x - view.center.x)) * all(view.scale.x),
+          all((static_cast<float>(planes.y + y) + 0.5f + view.tile.y - view.center.y) * view.scale.x)};
+}
+
+// Of the pixels from `at` on.
+HWY_INLINE Vec3 normalsAt(const SurfacePlanes& planes, std::size_t at) {
   const F f;
   const U u;
-  const f32::ViewBlock& view = planes.view;
   const V one = all(1.0f), zero = hn::Zero(f);
-  const V value = hn::LoadU(f, planes.depth.data() + at), factor = all(view.depthMap.x);
-  const V px = (pixelCenters(x) + all(view.tile.x - view.center.x)) * all(view.scale.x);
-  const V py = all((static_cast<float>(y) + 0.5f + view.tile.y - view.center.y) * view.scale.x);
-  Surfaces s;
-  s.there = value > zero;
-  if (view.scale.z > 0.5f) {
-    const float toFar = view.depth.x - view.depth.w;
-    const V inverse = one / (hn::Max(value, zero) + factor);
-    const V depth = all(toFar * view.depthMap.x) * inverse;
-    s.point = {px * depth, py * depth, all(view.depth.w) + value * all(toFar) * inverse};
-  } else {
-    s.point = {px, py, all(view.depth.w) + value / factor};
-  }
   const auto stored = hn::LoadU(u, planes.normal.data() + at);
   const auto channel = [&](auto bits) {
     return hn::ConvertTo(f, hn::BitCast(I(), bits)) * all(2.0f / 65535.0f) - one;
@@ -52,7 +49,27 @@ HWY_INLINE Surfaces surfacesAt(const SurfacePlanes& planes, std::size_t at, int 
   const V fold = hn::Max(hn::Neg(nz), zero);
   const Vec3 n{nx - hn::IfThenElse(nx >= zero, fold, hn::Neg(fold)),
                ny - hn::IfThenElse(ny >= zero, fold, hn::Neg(fold)), nz};
-  s.normal = scale(n, one / hn::Sqrt(dot(n, n)));
+  return scale(n, one / hn::Sqrt(dot(n, n)));
+}
+
+// Of the pixels (x, y), (x + 1, y), ... from `at` on.
+HWY_INLINE Surfaces surfacesAt(const SurfacePlanes& planes, std::size_t at, int x, int y) {
+  const F f;
+  const f32::ViewBlock& view = planes.view;
+  const V one = all(1.0f), zero = hn::Zero(f);
+  const V value = hn::LoadU(f, planes.depth.data() + at), factor = all(view.depthMap.x);
+  const Slopes slopes = slopesAt(planes, x, y);
+  Surfaces s;
+  s.there = value > zero;
+  if (view.scale.z > 0.5f) {
+    const float toFar = view.depth.x - view.depth.w;
+    const V inverse = one / (hn::Max(value, zero) + factor);
+    const V depth = all(toFar * view.depthMap.x) * inverse;
+    s.point = {slopes.x * depth, slopes.y * depth, all(view.depth.w) + value * all(toFar) * inverse};
+  } else {
+    s.point = {slopes.x, slopes.y, all(view.depth.w) + value / factor};
+  }
+  s.normal = normalsAt(planes, at);
   return s;
 }
 

@@ -71,13 +71,11 @@ TextureRef addDepthUnsharp(FrameGraph& graph, const UnsharpKernel& kernel,
                            const DepthUnsharpUniforms& uniforms, ShaderLibrary& shaders,
                            const GBufferRefs& gbuffer, const Tile& tile, SurfaceReader* reader) {
   if (reader != nullptr) {
-    const TextureRef out =
-        graph.create("depth difference", {gl::TextureFormat::r32f, tile.width, tile.height});
-    graph.addPass("depth unsharp", {gbuffer.depth, gbuffer.normal}, {{out, 0}},
-                  [&uniforms, reader, gbuffer, out, tile](const PassContext& context) {
-                    std::vector<float>& difference = reader->numbers();
-                    unsharpDepth(reader->read(context, gbuffer), uniforms.block(), difference);
-                    context.texture(out).write(tile.width, tile.height, difference.data(), 0, 0);
+    const TextureRef out = reader->createResult(graph, "depth difference", gl::TextureFormat::r32f);
+    graph.addPass("depth unsharp", {gbuffer.depth, gbuffer.normal}, {reader->attachment(out)},
+                  [&uniforms, reader, gbuffer, out](const PassContext& context) {
+                    unsharpDepth(reader->read(context, gbuffer), uniforms.block(), reader->difference);
+                    reader->write(context, out, reader->difference);
                   });
     return out;
   }

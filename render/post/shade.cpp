@@ -14,12 +14,6 @@ namespace meniscus {
 
 namespace {
 
-// Layout of ShadeUniforms in shaders/include/lighting.glsl.
-struct ShadeBlock {
-  glm::vec4 key, fill, ambient, backdrop, fog, line, unsharp;
-  std::array<glm::vec4, 256> linear;
-};
-
 glm::vec4 towardsLight(const DirectionalLight& light) {
   const double length = glm::length(light.direction);
   const glm::dvec3 towards = length > 0 ? -light.direction / length : glm::dvec3(0, 0, 1);
@@ -56,6 +50,15 @@ void clearTo(const ShadeSettings& settings) {
   glClearBufferfv(GL_COLOR, 0, values);
 }
 
+std::vector<TextureRef> readsOf(const GBufferRefs& gbuffer, const LightRefs& light) {
+  std::vector<TextureRef> reads{gbuffer.albedo, gbuffer.normal, gbuffer.depth};
+  for (const TextureRef ref : {light.visibility, light.occlusion, light.difference, light.lines, light.labels,
+                               light.traced}) {
+    if (ref.valid()) reads.push_back(ref);
+  }
+  return reads;
+}
+
 }  // namespace
 
 glm::vec4 backdrop(const Background& background) {
@@ -63,9 +66,9 @@ glm::vec4 backdrop(const Background& background) {
 }
 
 void ShadeUniforms::set(const ShadeSettings& settings) {
-  if (!buffer_.object) buffer_ = gl::Buffer::updatable(sizeof(ShadeBlock));
+  if (!buffer_.object) buffer_ = gl::Buffer::updatable(sizeof(effects::ShadeBlock));
   const Lighting& l = settings.lighting;
-  const ShadeBlock block{
+  block_ = {
       towardsLight(l.key),
       towardsLight(l.fill),
       glm::vec4(glm::dvec4(l.ambient, l.specular, l.shininess, settings.occlusion.strength)),
@@ -74,18 +77,12 @@ void ShadeUniforms::set(const ShadeSettings& settings) {
       linearColor(settings.lines.color, settings.lines.strength),
       unsharpOf(settings),
       linearTable()};
-  buffer_.update(&block);
+  buffer_.update(&block_);
 }
 
 void addShade(FrameGraph& graph, const ShadeSettings& settings, const ShadeUniforms& uniforms,
               ShaderLibrary& shaders, const GBufferRefs& gbuffer, const LightRefs& light, TextureRef target) {
-  std::vector<TextureRef> reads{gbuffer.albedo, gbuffer.normal, gbuffer.depth};
-  if (light.visibility.valid()) reads.push_back(light.visibility);
-  if (light.occlusion.valid()) reads.push_back(light.occlusion);
-  if (light.difference.valid()) reads.push_back(light.difference);
-  if (light.lines.valid()) reads.push_back(light.lines);
-  if (light.labels.valid()) reads.push_back(light.labels);
-  if (light.traced.valid()) reads.push_back(light.traced);
+  const std::vector<TextureRef> reads = readsOf(gbuffer, light);
   const bool fog = settings.fog.strength > 0;
   graph.addPass("shade", reads, {{target, 0}, {gbuffer.depth, FrameGraph::kTestedDepth}},
                 [settings, fog, &uniforms, &shaders, gbuffer, light](const PassContext& context) {
@@ -130,6 +127,29 @@ void addShade(FrameGraph& graph, const ShadeSettings& settings, const ShadeUnifo
                   if (settings.final) clearTo(settings);
                   drawOverSurface(program, !settings.final);
                 });
+}
+
+TextureRef addProcessorShade(FrameGraph& graph, const ShadeUniforms& uniforms, SurfaceReader& reader,
+                             const GBufferRefs& gbuffer, const LightRefs& light,
+                             const ProcessorShadeTarget& target) {
+  const TextureRef result = graph.createInMemory("light");
+  graph.addPass("shade", readsOf(gbuffer, light), {{result, FrameGraph::kInMemory}},
+                [&uniforms, &reader, gbuffer, light, target](const PassContext& context) {
+                  const effects::LightPlanes planes{
+                      reader.fetch(context, light.visibility, reader.visibility),
+                      reader.fetch(context, light.occlusion, reader.occlusion),
+                      reader.fetch(context, light.difference, reader.difference),
+                      reader.fetch(context, light.lines, reader.lines),
+                      reader.fetch(context, light.traced, reader.traced),
+                      reader.fetch(context, light.labels, reader.labels)};
+                  const effects::SurfacePlanes& surface = reader.read(context, gbuffer, {.albedo = true});
+                  if (target.picture) {
+                    shadePicture(surface, uniforms.block(), planes, *target.picture);
+                  } else {
+                    addLight(surface, uniforms.block(), planes, target.sample == 0, *target.sum);
+                  }
+                });
+  return result;
 }
 
 }  // namespace meniscus

@@ -1,10 +1,14 @@
 #pragma once
 // Deferred shading: from the G-buffer to light.
 
+#include <optional>
+
+#include "core/effects/shading.h"
 #include "core/render_settings.h"
 #include "core/scene.h"
 #include "render/frame_graph.h"
 #include "render/gbuffer.h"
+#include "render/post/surface_reader.h"
 #include "render/shader_library.h"
 
 namespace meniscus {
@@ -29,9 +33,11 @@ class ShadeUniforms {
   /// Makes the block current for the next frames.
   void set(const ShadeSettings& settings);
   unsigned name() const { return buffer_.object.name(); }
+  const effects::ShadeBlock& block() const { return block_; }
 
  private:
   gl::Buffer buffer_;
+  effects::ShadeBlock block_{};
 };
 
 /// What other passes found out, per pixel; those that are not valid take no part.
@@ -47,6 +53,18 @@ struct LightRefs {
 /// Adds the pass; it draws into `target`.
 void addShade(FrameGraph& graph, const ShadeSettings& settings, const ShadeUniforms& uniforms,
               ShaderLibrary& shaders, const GBufferRefs& gbuffer, const LightRefs& light, TextureRef target);
+
+/// Where light goes that the processor computes: to a sum of samples or, as the only one, to the picture.
+struct ProcessorShadeTarget {
+  effects::LightSum* sum = nullptr;
+  int sample = 0;
+  std::optional<effects::PictureRows> picture = {};
+};
+
+/// Adds the same by the processor (core/effects/shading.h). Returns what to want.
+TextureRef addProcessorShade(FrameGraph& graph, const ShadeUniforms& uniforms, SurfaceReader& reader,
+                             const GBufferRefs& gbuffer, const LightRefs& light,
+                             const ProcessorShadeTarget& target);
 
 /// Background as the shaders take it: premultiplied linear light, transparent = all zero.
 glm::vec4 backdrop(const Background& background);

@@ -87,17 +87,18 @@ void ShadowUniforms::set(const ShadowSettings& settings, const View& camera, con
 TextureRef addShadow(FrameGraph& graph, const ShadowSettings& settings, const ShadowMap& map,
                      const ShadowUniforms& uniforms, ShaderLibrary& shaders, const GBufferRefs& gbuffer,
                      int width, int height, SurfaceReader* reader) {
-  const TextureRef visibility = graph.create("visibility", {gl::TextureFormat::r16, width, height});
   const bool soft = settings.mode == ShadowMode::soft;
   if (reader != nullptr) {
+    const TextureRef result = reader->createResult(graph, "visibility", gl::TextureFormat::r16);
     graph.addPass(
-        "shadow", {gbuffer.depth, gbuffer.normal}, {{visibility, 0}},
-        [&uniforms, reader, gbuffer, heights = map.heights, visibility, soft](const PassContext& context) {
-          lookUpShadow(reader->read(context, gbuffer), uniforms.filter(), *heights, soft, reader->shares());
-          reader->write(context, visibility, reader->shares());
+        "shadow", {gbuffer.depth, gbuffer.normal}, {reader->attachment(result)},
+        [&uniforms, reader, gbuffer, heights = map.heights, result, soft](const PassContext& context) {
+          lookUpShadow(reader->read(context, gbuffer), uniforms.filter(), *heights, soft, reader->visibility);
+          reader->write(context, result, reader->visibility);
         });
-    return visibility;
+    return result;
   }
+  const TextureRef visibility = graph.create("visibility", {gl::TextureFormat::r16, width, height});
   const TextureRef mapRef = graph.import("shadow map", *map.depth, Clear::none);
   graph.addPass("shadow", {gbuffer.depth, gbuffer.normal, mapRef},
                 {{visibility, 0}, {gbuffer.depth, FrameGraph::kTestedDepth}},

@@ -52,7 +52,6 @@ int reachOf(const SilhouetteSettings& settings) {
 TextureRef addSilhouette(FrameGraph& graph, const SilhouetteSettings& settings,
                          const SilhouetteUniforms& uniforms, ShaderLibrary& shaders,
                          const GBufferRefs& gbuffer, int width, int height, SurfaceReader* reader) {
-  const TextureRef lines = graph.create("lines", {gl::TextureFormat::r16, width, height});
   ShaderFlags flags;
   if (settings.creases) flags.insert("CREASES");
   std::vector<TextureRef> reads{gbuffer.depth, gbuffer.normal};
@@ -62,17 +61,19 @@ TextureRef addSilhouette(FrameGraph& graph, const SilhouetteSettings& settings,
     reads.push_back(gbuffer.id);
   }
   if (reader != nullptr && !settings.creases) {
+    const TextureRef lines = reader->createResult(graph, "lines", gl::TextureFormat::r16);
     graph.addPass(
-        "silhouette", reads, {{lines, 0}},
+        "silhouette", reads, {reader->attachment(lines)},
         [&uniforms, reader, gbuffer, lines, groups = settings.groups](const PassContext& context) {
           const bool ids = groups != LineGroups::none;
           const effects::OutlineGroups byGroup{
               ids, groups == LineGroups::atoms ? std::span<const std::uint32_t>() : uniforms.groupsById()};
-          drawOutlines(reader->read(context, gbuffer, ids), uniforms.block(), byGroup, reader->shares());
-          reader->write(context, lines, reader->shares());
+          drawOutlines(reader->read(context, gbuffer, {.id = ids}), uniforms.block(), byGroup, reader->lines);
+          reader->write(context, lines, reader->lines);
         });
     return lines;
   }
+  const TextureRef lines = graph.create("lines", {gl::TextureFormat::r16, width, height});
   const TextureRef borders = graph.create("borders", {gl::TextureFormat::r16, width, height});
   const auto bindSurface = [&uniforms, gbuffer](const PassContext& context) {
     glBindTextureUnit(0, context.texture(gbuffer.depth).object.name());

@@ -4,34 +4,31 @@
 
 namespace meniscus {
 
-void SurfaceReader::begin(const f32::ViewBlock& view, int width, int height) {
+void SurfaceReader::begin(const f32::ViewBlock& view, int width, int height, bool shades) {
+  planes_ = {};
   planes_.view = view;
-  planes_.width = width;
-  planes_.height = height;
-  surface_ = ids_ = false;
+  planes_.width = width_ = width;
+  planes_.height = height_ = height;
+  shades_ = shades;
 }
 
 const effects::SurfacePlanes& SurfaceReader::read(const PassContext& context, const GBufferRefs& gbuffer,
-                                                  bool ids) {
-  const auto fetch = [&](TextureRef channel, auto& plane) {
-    plane.resize(planes_.pixels() + effects::kMostLanes);
-    context.texture(channel).read(planes_.width, planes_.height, planes_.width, plane.data());
+                                                  const SurfaceChannels& wanted) {
+  const auto fetch = [&](TextureRef channel, auto& values, auto& plane) {
+    if (!plane.empty()) return;
+    values.resize(planes_.pixels() + effects::kMostLanes);
+    context.texture(channel).read(width_, height_, width_, values.data());
+    plane = values;
   };
-  if (!surface_) {
-    fetch(gbuffer.depth, planes_.depth);
-    fetch(gbuffer.normal, planes_.normal);
-    surface_ = true;
-  }
-  if (ids && !ids_) {
-    fetch(gbuffer.id, planes_.id);
-    ids_ = true;
-  }
+  fetch(gbuffer.depth, depth_, planes_.depth);
+  fetch(gbuffer.normal, normal_, planes_.normal);
+  if (wanted.albedo) fetch(gbuffer.albedo, albedo_, planes_.albedo);
+  if (wanted.id) fetch(gbuffer.id, id_, planes_.id);
   return planes_;
 }
 
-void SurfaceReader::write(const PassContext& context, TextureRef target,
-                          const effects::Shares& shares) const {
-  context.texture(target).write(planes_.width, planes_.height, shares.data(), 0, 0);
+TextureRef SurfaceReader::createResult(FrameGraph& graph, const char* name, gl::TextureFormat format) const {
+  return shades_ ? graph.createInMemory(name) : graph.create(name, {format, width_, height_});
 }
 
 EffectsChoice chooseEffects(std::optional<bool> wanted) {

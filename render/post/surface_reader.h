@@ -2,7 +2,9 @@
 // A frame's G-buffer read back for the effects that the processor computes (core/effects/).
 
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "core/effects/surface_planes.h"
 #include "render/frame_graph.h"
@@ -10,26 +12,53 @@
 
 namespace meniscus {
 
+/// Channels beside depth and normal.
+struct SurfaceChannels {
+  bool albedo = false, id = false;
+};
+
 class SurfaceReader {
  public:
-  /// What is read from now on is another frame's.
-  void begin(const f32::ViewBlock& view, int width, int height);
+  /// What is read from now on is another frame's. shades: the processor shades it, too.
+  void begin(const f32::ViewBlock& view, int width, int height, bool shades);
+  bool shades() const { return shades_; }
   /// Reads what has not been read of this frame.
   const effects::SurfacePlanes& read(const PassContext& context, const GBufferRefs& gbuffer,
-                                     bool ids = false);
-  /// Writes an effect's result into a texture of the frame's size and format R16.
-  void write(const PassContext& context, TextureRef target, const effects::Shares& shares) const;
+                                     const SurfaceChannels& wanted = {});
+  /// What an effect computes, pixel by pixel: if the processor shades the frame it stays in main memory.
+  TextureRef createResult(FrameGraph& graph, const char* name, gl::TextureFormat format) const;
+  /// Of a pass that writes nothing else.
+  FrameGraph::Attachment attachment(TextureRef result) const {
+    return {result, shades_ ? FrameGraph::kInMemory : 0};
+  }
+  /// Finishes such a result, which is read() in whole numbers or floats.
+  template <typename T>
+  void write(const PassContext& context, TextureRef result, const std::vector<T>& values) const {
+    if (!shades_) context.texture(result).write(width_, height_, values.data(), 0, 0);
+  }
+  /// Reads what a pass drew or left in main memory, of which `values` must be the place.
+  template <typename T>
+  std::span<const T> fetch(const PassContext& context, TextureRef result, std::vector<T>& values) const {
+    if (!result.valid()) return {};
+    if (!context.isInMemory(result)) {
+      const gl::Texture& texture = context.texture(result);
+      values.resize(texture.bytes() / sizeof(T));
+      texture.read(width_, height_, width_, values.data());
+    }
+    return values;
+  }
 
-  // Room for what an effect computes before it is written: fresh memory for every frame would cost as much as
-  // the effect.
-  effects::Shares& shares() { return shares_; }
-  std::vector<float>& numbers() { return numbers_; }
+  // Room for what effects compute: fresh memory for every frame would cost as much as the effect.
+  effects::Shares visibility, lines, labels;
+  std::vector<std::uint32_t> occlusion;
+  std::vector<float> difference, traced;
 
  private:
   effects::SurfacePlanes planes_;
-  effects::Shares shares_;
-  std::vector<float> numbers_;
-  bool surface_ = false, ids_ = false;
+  std::vector<float> depth_;
+  std::vector<std::uint32_t> normal_, albedo_, id_;
+  int width_ = 0, height_ = 0;
+  bool shades_ = false;
 };
 
 /// Whether the processor computes effects, and why, for --explain.
