@@ -21,7 +21,13 @@ std::vector<FrameGraph::Attachment> attachmentsOf(const GBufferRefs& g) {
        {std::pair{g.albedo, 0}, std::pair{g.normal, 1}, std::pair{g.id, 2}, std::pair{g.distance, 3}}) {
     if (channel.valid()) writes.push_back({channel, location});
   }
+  if (g.planes.valid()) writes.push_back({g.planes, FrameGraph::kInMemory});
   return writes;
+}
+
+std::vector<TextureRef> surfaceOf(const GBufferRefs& g) {
+  if (g.planes.valid()) return {g.planes};
+  return {g.depth, g.normal};
 }
 
 ShaderFlags channelFlags(const PassContext& context, const GBufferRefs& g) {

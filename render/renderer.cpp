@@ -119,9 +119,9 @@ struct Frame {
   ShadowMap shadowMap;  // without depth if there are no shadows
   bool occlusion = false;
   UnsharpKernel unsharp = {};
-  int margin = 0;                    // of a tile: how far its pixels' effects look [pixels]
-  bool translucent = false;          // surfaces are laid over the rest, layer by layer
-  bool traced = false;               // some of the light
+  int margin = 0;            // of a tile: how far its pixels' effects look [pixels]
+  bool translucent = false;  // surfaces are laid over the rest, layer by layer
+  bool traced = false;       // some of the light
   bool processorShades = false;
   std::function<void()> watch = {};  // is called now and then while a pass takes long; may throw
 };
@@ -268,14 +268,36 @@ struct Renderer::Impl {
     }
   }
 
+  // Whether the processor draws whatever there is.
+  bool castsAll(const SurfaceSettings& surface) const {
+    if (primitives->empty() || !primitives->mesh.empty()) return false;
+    return (primitives->noQuadrics() || quadricChoice.method == QuadricMethod::tiles) &&
+           (primitives->surfaces.empty() || surfaceMethodFor(surface).planes);
+  }
+
+  // Textures are left to those that draw from them.
+  void keepInMemory(FrameGraph& graph, const Frame& frame, GBufferRefs& gbuffer) {
+    for (const char* channel : {"depth", "albedo", "normal"})
+      graph.leaveOut("texture " + std::string(channel), "the processor casts and shades");
+    const RenderSettings& settings = frame.settings;
+    const std::size_t casts = (primitives->noQuadrics() ? 0 : 1) + primitives->surfaces.size();
+    const bool lookAround = settings.lines.any() || settings.depthUnsharp.mode != UnsharpMode::off ||
+                            frame.occlusion || frame.traced || !labelBuffers.empty();
+    surfaceReader.keepCast({.albedo = true, .id = settings.lines.groups != LineGroups::none},
+                           casts > 1 || lookAround ? tiles::Extent::whole : tiles::Extent::occupied);
+    gbuffer.planes = graph.createInMemory("planes");
+    gbuffer.memory = &surfaceReader;
+  }
+
   // One sample of one tile: every pass of the program is named here.
   GBufferRefs buildFrame(FrameGraph& graph, const Frame& frame, const Tile& tile, glm::vec2 sampleShift,
                          const LightTarget& target) {
     const f32::ViewBlock block = setView(frame.view, tile, sampleShift);
-    const GBufferRefs gbuffer = createGBuffer(graph, tile.width, tile.height);
+    GBufferRefs gbuffer = createGBuffer(graph, tile.width, tile.height);
+    surfaceReader.begin(block, tile.width, tile.height, frame.processorShades);
+    if (frame.processorShades && castsAll(frame.settings.surface)) keepInMemory(graph, frame, gbuffer);
     addScene(graph, frame.view, tile, sampleShift, gbuffer,
              frame.translucent ? Surfaces::apart : Surfaces::opaque);
-    surfaceReader.begin(block, tile.width, tile.height, frame.processorShades);
     SurfaceReader* const reader = effects.processor ? &surfaceReader : nullptr;
     LightRefs light;
     if (frame.traced) {
@@ -645,10 +667,10 @@ void Renderer::renderPicture(const View& view, const Lighting& lighting, const B
       const auto width = static_cast<std::size_t>(tile.width);
       if (layout.layers.data())
         colors.resize(color ? bytesPerPixel(layout.format) * width * static_cast<std::size_t>(height) : 0);
-      const PictureTarget picture{texture.get(),
-                                  {cropX, cropY, tile.width, tile.height, layout.format,
-                                   layout.layers.data() ? colors.data() : here,
-                                   layout.layers.data() ? bytesPerPixel(layout.format) * width : rowBytes}};
+      const PictureTarget picture{
+          texture.get(),
+          {cropX, cropY, tile.width, tile.height, layout.format, layout.layers.data() ? colors.data() : here,
+           layout.layers.data() ? bytesPerPixel(layout.format) * width : rowBytes}};
       {
         Stopwatch watch(r.stats.drawMs);
         const double share = static_cast<double>(tile.width) * tile.height / pixels;

@@ -80,6 +80,7 @@ struct SurfaceMethodInfo {
   std::span<const SurfaceParameter> parameters;
   std::unique_ptr<SurfaceMethod> (*make)(const SurfaceParameters& values);
   bool translucent = false;  ///< can draw SurfaceTarget::layers
+  bool planes = false;       ///< the processor casts it: can leave GBufferRefs::planes
 };
 
 /// All methods, in the order of the documentation; a new one adds its line to render/surface_methods.cpp.

@@ -20,7 +20,12 @@ namespace meniscus {
 
 std::span<const SurfaceMethodInfo> surfaceMethods() {
   static const SurfaceMethodInfo kMethods[] = {
-      {"tiles", "exact, by the processor, from lists of each screen tile (docs/methods.md)", {}, makeTiles},
+      {"tiles",
+       "exact, by the processor, from lists of each screen tile (docs/methods.md)",
+       {},
+       makeTiles,
+       false,
+       true},
       {"tiles_glsl", "the same lists, cast by shaders: exact, for a GPU", tilesGlslParameters(),
        makeTilesGlsl},
       {"bezier", "depth-peeled Bezier clipping (Kanamori, Szego and Nishita 2008)", bezierParameters(),

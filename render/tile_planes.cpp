@@ -1,24 +1,38 @@
 #include "render/tile_planes.h"
 
+#include "render/post/surface_reader.h"
+
 namespace meniscus {
 
 tiles::PlaneChannels wantedPlanes(const PassContext& context, const GBufferRefs& gbuffer) {
-  return {context.isLive(gbuffer.albedo), context.isLive(gbuffer.normal), context.isLive(gbuffer.id),
-          context.isLive(gbuffer.distance)};
+  tiles::PlaneChannels wanted{context.isLive(gbuffer.albedo), context.isLive(gbuffer.normal),
+                              context.isLive(gbuffer.id), context.isLive(gbuffer.distance)};
+  if (gbuffer.planes.valid()) {
+    const SurfaceChannels& channels = gbuffer.memory->kept();
+    wanted.albedo = wanted.albedo || channels.albedo;
+    wanted.normal = true;
+    wanted.id = wanted.id || channels.id;
+  }
+  return wanted;
 }
 
-void writePlanes(const PassContext& context, const GBufferRefs& gbuffer, const tiles::Planes& planes,
+tiles::Extent wantedExtent(const GBufferRefs& gbuffer) {
+  return gbuffer.planes.valid() ? gbuffer.memory->extent() : tiles::Extent::occupied;
+}
+
+void writePlanes(const PassContext& context, const GBufferRefs& gbuffer, tiles::Planes& planes,
                  const tiles::PixelArea& area) {
+  const tiles::Planes& all = gbuffer.planes.valid() ? gbuffer.memory->keep(planes, area) : planes;
   const auto write = [&](TextureRef channel, const auto& plane) {
     if (!context.isLive(channel)) return;
-    const tiles::PixelArea& part = planes.area;
+    const tiles::PixelArea& part = all.area;
     context.texture(channel).write(part.width, part.height, plane.data(), part.x - area.x, part.y - area.y);
   };
-  write(gbuffer.depth, planes.depth);
-  write(gbuffer.albedo, planes.albedo);
-  write(gbuffer.normal, planes.normal);
-  write(gbuffer.id, planes.id);
-  write(gbuffer.distance, planes.distance);
+  write(gbuffer.depth, all.depth);
+  write(gbuffer.albedo, all.albedo);
+  write(gbuffer.normal, all.normal);
+  write(gbuffer.id, all.id);
+  write(gbuffer.distance, all.distance);
 }
 
 }  // namespace meniscus

@@ -9,9 +9,12 @@ namespace meniscus {
 
 /// The channels that somebody reads.
 tiles::PlaneChannels wantedPlanes(const PassContext& context, const GBufferRefs& gbuffer);
+/// The part of the target that is to be cast.
+tiles::Extent wantedExtent(const GBufferRefs& gbuffer);
 
-/// Replaces the planes' part of the channels. area: of the target.
-void writePlanes(const PassContext& context, const GBufferRefs& gbuffer, const tiles::Planes& planes,
+/// Replaces the planes' part of the channels; planes that are kept in main memory join what is kept there,
+/// and are exchanged for others. area: of the target.
+void writePlanes(const PassContext& context, const GBufferRefs& gbuffer, tiles::Planes& planes,
                  const tiles::PixelArea& area);
 
 }  // namespace meniscus

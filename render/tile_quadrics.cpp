@@ -44,7 +44,7 @@ void TileQuadrics::add(FrameGraph& graph, const View& view, const Tile& tile, gl
   // The framebuffer is bound for nothing but its clearing: the part with no block in it stays background.
   graph.addPass(prefix + "tiles", {}, attachmentsOf(g),
                 [this, &caster, target, g](const PassContext& context) {
-                  caster.cast(target, wantedPlanes(context, g), planes_);
+                  caster.cast(target, wantedPlanes(context, g), planes_, wantedExtent(g));
                   writePlanes(context, g, planes_, target.area);
                 });
 }

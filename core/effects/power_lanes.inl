@@ -26,13 +26,20 @@ HWY_INLINE V powerOfShare(V x, float exponent) {
   const V m = hn::BitCast(f, hn::And(bits, hn::Set(i, 0x007FFFFF)) + hn::Set(i, 0x3F3504F3));
   // log2(m) = 2 / ln 2 artanh((m - 1) / (m + 1)).
   const V s = (m - one) / (m + one), s2 = s * s;
-  const V series = ((all(0.32059889f) * s2 + all(0.41219858f)) * s2 + all(0.57707802f)) * s2 + all(0.96179669f);
+  const V series =
+      ((all(0.32059889f) * s2 + all(0.41219858f)) * s2 + all(0.57707802f)) * s2 + all(0.96179669f);
   const V log2 = hn::ConvertTo(f, e) + (all(2.88539008f) * s + s * s2 * series);
   const V y = hn::Max(all(exponent) * log2, all(-126.0f));
   const V whole = hn::Round(y), z = (y - whole) * all(0.69314718f);
   const V power =
       ((((((all(1.0f / 5040) * z + all(1.0f / 720)) * z + all(1.0f / 120)) * z + all(1.0f / 24)) * z +
-         all(1.0f / 6)) * z + all(0.5f)) * z + one) * z + one;
+         all(1.0f / 6)) *
+            z +
+        all(0.5f)) *
+           z +
+       one) *
+          z +
+      one;
   const auto scale2 = hn::ShiftLeft<23>(hn::ConvertTo(i, whole) + hn::Set(i, 127));
   return power * hn::BitCast(f, scale2);
 }

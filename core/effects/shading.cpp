@@ -136,7 +136,8 @@ HWY_INLINE Light surfaceLight(const ShadeTask& task, std::size_t at, int x, int 
   if (!light.occlusion.empty()) {
     std::uint16_t halves[2 * kMostLanes] = {};
     std::memcpy(halves, light.occlusion.data() + at, 4 * count);
-    const V hidden = loadShares(halves, count, 2, kUnorm16), all_ = loadShares(halves + 1, count, 2, kUnorm16);
+    const V hidden = loadShares(halves, count, 2, kUnorm16),
+            all_ = loadShares(halves + 1, count, 2, kUnorm16);
     sky = one - all(b.ambient.w) * hn::Min(hidden / hn::Max(all_, all(1e-5f)), one);
   }
   Light l{lit(b, linearAlbedo(task, at), normalsAt(planes, at), toEye, visible, sky), one};
@@ -227,7 +228,8 @@ void encodeRow(const EncodeTask& task, const LitRow& row, std::size_t count, std
     const auto load = [&](const float* from) { return loadSome(from + x, here) * per; };
     const V a = load(row.alpha), left = one - a;
     const V alpha = a + left * all(task.backdrop.w);
-    const Vec3 over{load(row.red) + left * all(task.backdrop.x), load(row.green) + left * all(task.backdrop.y),
+    const Vec3 over{load(row.red) + left * all(task.backdrop.x),
+                    load(row.green) + left * all(task.backdrop.y),
                     load(row.blue) + left * all(task.backdrop.z)};
     if (task.format == PixelFormat::rgbaFloat) {
       alignas(64) float values[4][kMostLanes];
@@ -368,7 +370,8 @@ void writePicture(const LightSum& sum, int samples, const glm::vec4& backdrop, c
       return;
     }
     const std::size_t at = static_cast<std::size_t>(y - sum.y) * static_cast<std::size_t>(sum.width);
-    writer.write(y, {sum.red.data() + at, sum.green.data() + at, sum.blue.data() + at, sum.alpha.data() + at});
+    writer.write(y,
+                 {sum.red.data() + at, sum.green.data() + at, sum.blue.data() + at, sum.alpha.data() + at});
   });
 }
 

@@ -26,8 +26,8 @@ struct LightPlanes {
   std::span<const std::uint32_t> occlusion;   ///< what is hidden of the sky, and the sky: 16 bits each
   std::span<const float> difference;          ///< in depth from the surroundings
   std::span<const std::uint16_t> lines;       ///< share of the pixel that is line
-  std::span<const float> traced;              ///< 4 per pixel: light of mirrors and glass, share left of the rest
-  std::span<const std::uint16_t> labels;      ///< 4 per pixel: premultiplied, over everything
+  std::span<const float> traced;          ///< 4 per pixel: light of mirrors and glass, share left of the rest
+  std::span<const std::uint16_t> labels;  ///< 4 per pixel: premultiplied, over everything
 };
 
 /// Premultiplied linear light of samples, added up, of a rectangle of the target.

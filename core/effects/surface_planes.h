@@ -16,10 +16,10 @@ struct SurfacePlanes {
   int x = 0, y = 0;       ///< the rectangle's lower left corner in the target
   int width = 0, height = 0;
   /// Each with room for another kMostLanes beyond the last pixel.
-  std::span<const float> depth;            ///< 0 = background
-  std::span<const std::uint32_t> albedo;   ///< bytes R, G, B; empty where nothing is shaded
-  std::span<const std::uint32_t> normal;   ///< octahedral, 16 bits each, x in the lower
-  std::span<const std::uint32_t> id;       ///< empty where no effect asks for it
+  std::span<const float> depth;           ///< 0 = background
+  std::span<const std::uint32_t> albedo;  ///< bytes R, G, B; empty where nothing is shaded
+  std::span<const std::uint32_t> normal;  ///< octahedral, 16 bits each, x in the lower
+  std::span<const std::uint32_t> id;      ///< empty where no effect asks for it
 
   std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
 };

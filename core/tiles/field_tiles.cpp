@@ -55,7 +55,8 @@ Tiles castBlock(const MetaballSource& source, const MetaballField& field, const 
 
 }  // namespace
 
-void FieldTiles::cast(const TileTarget& target, const PlaneChannels& channels, Planes& planes) {
+void FieldTiles::cast(const TileTarget& target, const PlaneChannels& channels, Planes& planes,
+                      Extent extent) {
   const MetaballSource source(*field_, target);
   if (!valid_ || !sameLists(listed_, target)) {
     lists_.build(source, *clusters_, target);
@@ -64,7 +65,7 @@ void FieldTiles::cast(const TileTarget& target, const PlaneChannels& channels, P
     wholeValid_ = false;
     ++builds_;
   }
-  planes.resize(lists_.occupied(target.area), channels);
+  planes.resize(extent == Extent::whole ? target.area : lists_.occupied(target.area), channels);
   const int blocks = lists_.grid().blocks();
   tbb::enumerable_thread_specific<FieldCounts> counts;
   std::vector<Tiles> again(static_cast<std::size_t>(blocks));

@@ -15,7 +15,8 @@ class FieldTiles {
   void setField(const MetaballField* field, std::shared_ptr<const Clusters> clusters);
   void setField(const MetaballField* field);
   /// As QuadricTiles::cast().
-  void cast(const TileTarget& target, const PlaneChannels& channels, Planes& planes);
+  void cast(const TileTarget& target, const PlaneChannels& channels, Planes& planes,
+            Extent extent = Extent::occupied);
   const TileLists& lists() const { return lists_; }
   /// Of memory.
   std::uint64_t bytesOfLists() const { return lists_.bytes() + whole_.bytes(); }

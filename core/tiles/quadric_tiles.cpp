@@ -19,7 +19,8 @@ void QuadricTiles::setPrimitives(const Primitives* primitives) {
   setPrimitives(primitives, std::make_shared<const Clusters>(clustersOf(*primitives)));
 }
 
-void QuadricTiles::cast(const TileTarget& target, const PlaneChannels& channels, Planes& planes) {
+void QuadricTiles::cast(const TileTarget& target, const PlaneChannels& channels, Planes& planes,
+                        Extent extent) {
   const QuadricSource source(*primitives_, target);
   if (!valid_ || !sameLists(listed_, target)) {
     lists_.build(source, *clusters_, target);
@@ -27,7 +28,7 @@ void QuadricTiles::cast(const TileTarget& target, const PlaneChannels& channels,
     valid_ = true;
     ++builds_;
   }
-  planes.resize(lists_.occupied(target.area), channels);
+  planes.resize(extent == Extent::whole ? target.area : lists_.occupied(target.area), channels);
   const TileGrid& grid = lists_.grid();
   tbb::parallel_for(0, grid.blocks(), [&](int b) {
     const TileBlock& block = lists_.block(b);

@@ -13,9 +13,10 @@ class QuadricTiles {
   /// What to draw from now on; must outlive the next call. clusters: of the same primitives.
   void setPrimitives(const Primitives* primitives, std::shared_ptr<const Clusters> clusters);
   void setPrimitives(const Primitives* primitives);
-  /// Fills planes of the part of target.area outside of which there is nothing but background (at least one
-  /// pixel). Lists are built again only if something but the sample's shift has changed.
-  void cast(const TileTarget& target, const PlaneChannels& channels, Planes& planes);
+  /// Fills planes of target.area, or of the part of it that is occupied (at least one pixel). Lists are built
+  /// again only if something but the sample's shift has changed.
+  void cast(const TileTarget& target, const PlaneChannels& channels, Planes& planes,
+            Extent extent = Extent::occupied);
   const TileLists& lists() const { return lists_; }
   /// How often lists were built.
   int builds() const { return builds_; }

@@ -62,28 +62,30 @@ void forRows(const PixelArea& area, int x, int y, F f) {
 }  // namespace
 
 void storeTile(const TilePixels& pixels, int x, int y, Planes& planes) {
+  const PlaneChannels& wanted = planes.channels;
   forRows(planes.area, x, y, [&](std::size_t to, std::size_t from, std::size_t count) {
-    const auto copy = [&](auto& plane, const auto* tile) {
-      if (!plane.empty()) std::memcpy(plane.data() + to, tile + from, 4 * count);
+    const auto copy = [&](bool is, auto& plane, const auto* tile) {
+      if (is) std::memcpy(plane.data() + to, tile + from, 4 * count);
     };
-    copy(planes.depth, pixels.depth);
-    copy(planes.albedo, pixels.albedo);
-    copy(planes.normal, pixels.normal);
-    copy(planes.id, pixels.id);
-    copy(planes.distance, pixels.distance);
+    copy(true, planes.depth, pixels.depth);
+    copy(wanted.albedo, planes.albedo, pixels.albedo);
+    copy(wanted.normal, planes.normal, pixels.normal);
+    copy(wanted.id, planes.id, pixels.id);
+    copy(wanted.distance, planes.distance, pixels.distance);
   });
 }
 
 void clearTile(int x, int y, Planes& planes) {
+  const PlaneChannels& wanted = planes.channels;
   forRows(planes.area, x, y, [&](std::size_t to, std::size_t, std::size_t count) {
-    const auto fill = [&](auto& plane, auto value) {
-      if (!plane.empty()) std::fill_n(plane.data() + to, count, value);
+    const auto fill = [&](bool is, auto& plane, auto value) {
+      if (is) std::fill_n(plane.data() + to, count, value);
     };
-    fill(planes.depth, 0.0f);
-    fill(planes.albedo, 0u);
-    fill(planes.normal, 0u);
-    fill(planes.id, 0u);
-    fill(planes.distance, std::numeric_limits<float>::infinity());
+    fill(true, planes.depth, 0.0f);
+    fill(wanted.albedo, planes.albedo, 0u);
+    fill(wanted.normal, planes.normal, 0u);
+    fill(wanted.id, planes.id, 0u);
+    fill(wanted.distance, planes.distance, std::numeric_limits<float>::infinity());
   });
 }
 

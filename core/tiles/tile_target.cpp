@@ -1,5 +1,10 @@
 #include "core/tiles/tile_target.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "core/error.h"
+
 namespace meniscus::tiles {
 
 bool sameLists(const TileTarget& a, const TileTarget& b) {
@@ -13,12 +18,29 @@ bool sameLists(const TileTarget& a, const TileTarget& b) {
 void Planes::resize(const PixelArea& newArea, const PlaneChannels& wanted) {
   area = newArea;
   channels = wanted;
-  const std::size_t pixels = static_cast<std::size_t>(area.width) * static_cast<std::size_t>(area.height);
-  depth.resize(pixels);
-  albedo.resize(wanted.albedo ? pixels : 0);
-  normal.resize(wanted.normal ? pixels : 0);
-  id.resize(wanted.id ? pixels : 0);
-  distance.resize(wanted.distance ? pixels : 0);
+  const std::size_t texels = pixels() + kPlanePadding;
+  depth.resize(texels);
+  albedo.resize(wanted.albedo ? texels : 0);
+  normal.resize(wanted.normal ? texels : 0);
+  id.resize(wanted.id ? texels : 0);
+  distance.resize(wanted.distance ? texels : 0);
+}
+
+void mergeNearer(Planes& planes, const Planes& others) {
+  MENISCUS_CHECK(planes.area == others.area && planes.channels == others.channels);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, planes.pixels(), 1 << 14),
+                    [&](const tbb::blocked_range<std::size_t>& part) {
+                      const auto keep = [&](auto& plane, const auto& other) {
+                        if (plane.empty()) return;
+                        for (std::size_t i = part.begin(); i < part.end(); ++i)
+                          plane[i] = others.depth[i] > planes.depth[i] ? other[i] : plane[i];
+                      };
+                      keep(planes.albedo, others.albedo);
+                      keep(planes.normal, others.normal);
+                      keep(planes.id, others.id);
+                      keep(planes.distance, others.distance);
+                      keep(planes.depth, others.depth);  // last: it decides
+                    });
 }
 
 std::uint64_t Planes::bytes() const {

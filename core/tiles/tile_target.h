@@ -43,6 +43,12 @@ struct PlaneChannels {
   bool operator==(const PlaneChannels&) const = default;
 };
 
+/// Which part of a target is wanted: all of it, or that outside of which there is nothing but background.
+enum class Extent : std::uint8_t { occupied, whole };
+
+/// Texels beyond the last pixel of planes, so that vectors may be read there.
+inline constexpr std::size_t kPlanePadding = 16;
+
 /// The channels of a part of a G-buffer (render/gbuffer.h), rows from the bottom, in the same formats. Those
 /// that are not wanted are empty.
 struct Planes {
@@ -56,8 +62,15 @@ struct Planes {
 
   /// Makes room; contents are not set.
   void resize(const PixelArea& newArea, const PlaneChannels& wanted);
+  std::size_t pixels() const {
+    return static_cast<std::size_t>(area.width) * static_cast<std::size_t>(area.height);
+  }
   std::uint64_t bytes() const;
 };
+
+/// Keeps of each pixel what is nearer, and of two that are as near the first. Both must have the same area
+/// and channels.
+void mergeNearer(Planes& planes, const Planes& others);
 
 /// The tiles that cover an area, and the blocks that cover the tiles.
 struct TileGrid {

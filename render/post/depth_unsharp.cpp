@@ -72,7 +72,7 @@ TextureRef addDepthUnsharp(FrameGraph& graph, const UnsharpKernel& kernel,
                            const GBufferRefs& gbuffer, const Tile& tile, SurfaceReader* reader) {
   if (reader != nullptr) {
     const TextureRef out = reader->createResult(graph, "depth difference", gl::TextureFormat::r32f);
-    graph.addPass("depth unsharp", {gbuffer.depth, gbuffer.normal}, {reader->attachment(out)},
+    graph.addPass("depth unsharp", surfaceOf(gbuffer), {reader->attachment(out)},
                   [&uniforms, reader, gbuffer, out](const PassContext& context) {
                     unsharpDepth(reader->read(context, gbuffer), uniforms.block(), reader->difference);
                     reader->write(context, out, reader->difference);

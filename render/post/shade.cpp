@@ -50,10 +50,9 @@ void clearTo(const ShadeSettings& settings) {
   glClearBufferfv(GL_COLOR, 0, values);
 }
 
-std::vector<TextureRef> readsOf(const GBufferRefs& gbuffer, const LightRefs& light) {
-  std::vector<TextureRef> reads{gbuffer.albedo, gbuffer.normal, gbuffer.depth};
-  for (const TextureRef ref : {light.visibility, light.occlusion, light.difference, light.lines, light.labels,
-                               light.traced}) {
+std::vector<TextureRef> with(const LightRefs& light, std::vector<TextureRef> reads) {
+  for (const TextureRef ref :
+       {light.visibility, light.occlusion, light.difference, light.lines, light.labels, light.traced}) {
     if (ref.valid()) reads.push_back(ref);
   }
   return reads;
@@ -68,21 +67,20 @@ glm::vec4 backdrop(const Background& background) {
 void ShadeUniforms::set(const ShadeSettings& settings) {
   if (!buffer_.object) buffer_ = gl::Buffer::updatable(sizeof(effects::ShadeBlock));
   const Lighting& l = settings.lighting;
-  block_ = {
-      towardsLight(l.key),
-      towardsLight(l.fill),
-      glm::vec4(glm::dvec4(l.ambient, l.specular, l.shininess, settings.occlusion.strength)),
-      backdrop(settings.background),
-      fogOf(settings.fog),
-      linearColor(settings.lines.color, settings.lines.strength),
-      unsharpOf(settings),
-      linearTable()};
+  block_ = {towardsLight(l.key),
+            towardsLight(l.fill),
+            glm::vec4(glm::dvec4(l.ambient, l.specular, l.shininess, settings.occlusion.strength)),
+            backdrop(settings.background),
+            fogOf(settings.fog),
+            linearColor(settings.lines.color, settings.lines.strength),
+            unsharpOf(settings),
+            linearTable()};
   buffer_.update(&block_);
 }
 
 void addShade(FrameGraph& graph, const ShadeSettings& settings, const ShadeUniforms& uniforms,
               ShaderLibrary& shaders, const GBufferRefs& gbuffer, const LightRefs& light, TextureRef target) {
-  const std::vector<TextureRef> reads = readsOf(gbuffer, light);
+  const std::vector<TextureRef> reads = with(light, {gbuffer.albedo, gbuffer.normal, gbuffer.depth});
   const bool fog = settings.fog.strength > 0;
   graph.addPass("shade", reads, {{target, 0}, {gbuffer.depth, FrameGraph::kTestedDepth}},
                 [settings, fog, &uniforms, &shaders, gbuffer, light](const PassContext& context) {
@@ -133,7 +131,9 @@ TextureRef addProcessorShade(FrameGraph& graph, const ShadeUniforms& uniforms, S
                              const GBufferRefs& gbuffer, const LightRefs& light,
                              const ProcessorShadeTarget& target) {
   const TextureRef result = graph.createInMemory("light");
-  graph.addPass("shade", readsOf(gbuffer, light), {{result, FrameGraph::kInMemory}},
+  std::vector<TextureRef> reads = with(light, surfaceOf(gbuffer));
+  if (!gbuffer.planes.valid()) reads.push_back(gbuffer.albedo);
+  graph.addPass("shade", std::move(reads), {{result, FrameGraph::kInMemory}},
                 [&uniforms, &reader, gbuffer, light, target](const PassContext& context) {
                   const effects::LightPlanes planes{
                       reader.fetch(context, light.visibility, reader.visibility),

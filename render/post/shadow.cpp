@@ -91,7 +91,7 @@ TextureRef addShadow(FrameGraph& graph, const ShadowSettings& settings, const Sh
   if (reader != nullptr) {
     const TextureRef result = reader->createResult(graph, "visibility", gl::TextureFormat::r16);
     graph.addPass(
-        "shadow", {gbuffer.depth, gbuffer.normal}, {reader->attachment(result)},
+        "shadow", surfaceOf(gbuffer), {reader->attachment(result)},
         [&uniforms, reader, gbuffer, heights = map.heights, result, soft](const PassContext& context) {
           lookUpShadow(reader->read(context, gbuffer), uniforms.filter(), *heights, soft, reader->visibility);
           reader->write(context, result, reader->visibility);

@@ -61,6 +61,7 @@ TextureRef addSilhouette(FrameGraph& graph, const SilhouetteSettings& settings,
     reads.push_back(gbuffer.id);
   }
   if (reader != nullptr && !settings.creases) {
+    if (gbuffer.planes.valid()) reads = {gbuffer.planes};
     const TextureRef lines = reader->createResult(graph, "lines", gl::TextureFormat::r16);
     graph.addPass(
         "silhouette", reads, {reader->attachment(lines)},

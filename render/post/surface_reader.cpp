@@ -1,5 +1,7 @@
 #include "render/post/surface_reader.h"
 
+#include <utility>
+
 #include "core/tiles/instruction_sets.h"
 
 namespace meniscus {
@@ -10,6 +12,29 @@ void SurfaceReader::begin(const f32::ViewBlock& view, int width, int height, boo
   planes_.width = width_ = width;
   planes_.height = height_ = height;
   shades_ = shades;
+}
+
+void SurfaceReader::keepCast(const SurfaceChannels& channels, tiles::Extent extent) {
+  kept_ = channels;
+  extent_ = extent;
+}
+
+const tiles::Planes& SurfaceReader::keep(tiles::Planes& planes, const tiles::PixelArea& target) {
+  static_assert(tiles::kPlanePadding >= effects::kMostLanes);
+  if (planes_.depth.empty()) {
+    std::swap(cast_, planes);
+  } else {
+    tiles::mergeNearer(cast_, planes);
+  }
+  planes_.x = cast_.area.x - target.x;
+  planes_.y = cast_.area.y - target.y;
+  planes_.width = cast_.area.width;
+  planes_.height = cast_.area.height;
+  planes_.depth = cast_.depth;
+  planes_.albedo = cast_.albedo;
+  planes_.normal = cast_.normal;
+  planes_.id = cast_.id;
+  return cast_;
 }
 
 const effects::SurfacePlanes& SurfaceReader::read(const PassContext& context, const GBufferRefs& gbuffer,

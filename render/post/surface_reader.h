@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/effects/surface_planes.h"
+#include "core/tiles/tile_target.h"
 #include "render/frame_graph.h"
 #include "render/gbuffer.h"
 
@@ -21,6 +22,13 @@ class SurfaceReader {
  public:
   /// What is read from now on is another frame's. shades: the processor shades it, too.
   void begin(const f32::ViewBlock& view, int width, int height, bool shades);
+  /// Everything in the frame is cast by the processor, and these channels of this part of it are kept.
+  void keepCast(const SurfaceChannels& channels, tiles::Extent extent);
+  const SurfaceChannels& kept() const { return kept_; }
+  tiles::Extent extent() const { return extent_; }
+  /// Takes planes, of which those before have what is nearer, and gives others for them. Returns what is
+  /// kept.
+  const tiles::Planes& keep(tiles::Planes& planes, const tiles::PixelArea& target);
   bool shades() const { return shades_; }
   /// Reads what has not been read of this frame.
   const effects::SurfacePlanes& read(const PassContext& context, const GBufferRefs& gbuffer,
@@ -55,6 +63,9 @@ class SurfaceReader {
 
  private:
   effects::SurfacePlanes planes_;
+  tiles::Planes cast_;
+  SurfaceChannels kept_;
+  tiles::Extent extent_ = tiles::Extent::whole;
   std::vector<float> depth_;
   std::vector<std::uint32_t> normal_, albedo_, id_;
   int width_ = 0, height_ = 0;

@@ -45,15 +45,16 @@ void Tiles::addPasses(FrameGraph& graph, ShaderLibrary& shaders, const SurfaceTa
       target.view, target.origin, {tile.x, tile.y, tile.width, tile.height}, target.sampleShift};
   tiles::FieldTiles& caster = target.prefix.empty() ? camera_ : light_;
   std::vector<TextureRef> reads;
-  if (!target.first) reads.push_back(g.depth);
+  const bool alone = target.first || g.planes.valid();  // what hides the surface is not in textures
+  if (!alone) reads.push_back(g.depth);
   graph.addPass(target.prefix + "surface", std::move(reads), attachmentsOf(g),
-                [this, &shaders, &caster, cast, g, first = target.first](const PassContext& context) {
-                  caster.cast(cast, wantedPlanes(context, g), planes_);
+                [this, &shaders, &caster, cast, g, alone](const PassContext& context) {
+                  caster.cast(cast, wantedPlanes(context, g), planes_, wantedExtent(g));
                   // In main memory, and for drawOver() in textures, too.
                   const double bytes =
                       static_cast<double>(planes_.bytes()) / planes_.area.width / planes_.area.height;
-                  mostBytesPerPixel_ = std::max(mostBytesPerPixel_, first ? bytes : 2 * bytes);
-                  if (first) {
+                  mostBytesPerPixel_ = std::max(mostBytesPerPixel_, alone ? bytes : 2 * bytes);
+                  if (alone) {
                     writePlanes(context, g, planes_, cast.area);
                   } else {
                     drawOver(context, shaders, cast, g);

@@ -186,7 +186,9 @@ TEST_F(Occlusion, IsTheSameInTilesAndAgain) {
 
 TEST_F(Occlusion, IsAPassATextureAndAProgramOnlyWhereItIsOn) {
   const auto scene = test::randomSpheres(20, 3);
-  Renderer renderer;
+  RendererOptions options;
+  options.effectsOnProcessor = false;
+  Renderer renderer(options);
   renderer.setPrimitives(scene);
   const View view = test::viewOf(*scene, {1, 1});
   draw(renderer, view, test::withSamples(1, QuadricMethod::splat));

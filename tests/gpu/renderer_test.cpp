@@ -58,9 +58,16 @@ bool omitted(const RenderStats& stats, const std::string& what) {
 
 using Names = std::vector<std::string>;
 
+// Nothing is computed beside OpenGL.
+RendererOptions byShaders() {
+  RendererOptions options;
+  options.effectsOnProcessor = false;
+  return options;
+}
+
 TEST_F(RendererTest, SpheresOnlyLeavesOutEverythingElse) {
   const auto scene = test::randomSpheres(50, 1);
-  Renderer renderer;
+  Renderer renderer(byShaders());
   renderer.setPrimitives(scene);
   draw(renderer, test::viewOf(*scene, kSize), 1, {}, PixelFormat::rgba8, QuadricMethod::splat);
   const RenderStats stats = renderer.stats();
@@ -94,7 +101,7 @@ TEST_F(RendererTest, DistanceOnlyNeedsNoColourAndNoShading) {
 
 TEST_F(RendererTest, FullPictureUsesEachProgramOnce) {
   const auto scene = test::randomChain(20, 1);
-  Renderer renderer;
+  Renderer renderer(byShaders());
   renderer.setPrimitives(scene);
   const View view = test::viewOf(*scene, kSize);
   for (int i = 0; i < 2; ++i) draw(renderer, view, 4, {}, PixelFormat::rgba8, QuadricMethod::splat);
@@ -105,6 +112,29 @@ TEST_F(RendererTest, FullPictureUsesEachProgramOnce) {
   EXPECT_EQ(stats.programs.size(), 4u);
   EXPECT_EQ(names(stats.buffers), (Names{"cylinders", "spheres"}));
   EXPECT_EQ(names(stats.textures), (Names{"albedo", "depth", "normal", "picture", "sum"}));
+}
+
+TEST_F(RendererTest, WhereTheProcessorCastsAndShadesNothingGoesThroughTextures) {
+  const auto scene = test::randomChain(20, 1);
+  RendererOptions options;
+  options.effectsOnProcessor = true;
+  Renderer renderer(options);
+  renderer.setPrimitives(scene);
+  draw(renderer, test::viewOf(*scene, kSize), 4, {}, PixelFormat::rgba8, QuadricMethod::tiles);
+  RenderStats stats = renderer.stats();
+  EXPECT_EQ(names(stats.passes), (Names{"tiles", "shade", "resolve"}));
+  EXPECT_EQ(stats.passes[1].runs, 4);
+  EXPECT_EQ(stats.programs, Names{});
+  EXPECT_EQ(names(stats.textures), Names{});
+  EXPECT_TRUE(omitted(stats, "texture depth"));
+  // What shaders compute of it gets the channels that it reads.
+  RenderSettings settings = test::withSamples(1, QuadricMethod::tiles);
+  settings.occlusion.on = true;
+  test::MemorySink sink;
+  renderer.renderPicture(test::viewOf(*scene, kSize), Lighting{}, {}, settings, PixelFormat::rgba8, sink);
+  const Names textures = names(renderer.stats().textures);
+  EXPECT_TRUE(std::binary_search(textures.begin(), textures.end(), "normal"));
+  EXPECT_FALSE(std::binary_search(textures.begin(), textures.end(), "albedo"));
 }
 
 TEST_F(RendererTest, EmptySceneDrawsTheBackgroundWithoutAQuadricPass) {
