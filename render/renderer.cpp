@@ -116,7 +116,7 @@ struct Frame {
   RenderSettings settings;
   ShadeSettings shade;
   Layers layers;
-  ShadowMap shadowMap;  // without depth if there are no shadows
+  ShadowMap shadowMap;  // not drawn if there are no shadows
   bool occlusion = false;
   UnsharpKernel unsharp = {};
   int margin = 0;            // of a tile: how far its pixels' effects look [pixels]
@@ -277,13 +277,12 @@ struct Renderer::Impl {
 
   // Textures are left to those that draw from them.
   void keepInMemory(FrameGraph& graph, const Frame& frame, GBufferRefs& gbuffer) {
-    for (const char* channel : {"depth", "albedo", "normal"})
-      graph.leaveOut("texture " + std::string(channel), "the processor casts and shades");
+    graph.leaveOut("G-buffer in textures", "the processor casts and shades: only what shaders read is there");
     const RenderSettings& settings = frame.settings;
     const std::size_t casts = (primitives->noQuadrics() ? 0 : 1) + primitives->surfaces.size();
     const bool lookAround = settings.lines.any() || settings.depthUnsharp.mode != UnsharpMode::off ||
                             frame.occlusion || frame.traced || !labelBuffers.empty();
-    surfaceReader.keepCast({.albedo = true, .id = settings.lines.groups != LineGroups::none},
+    surfaceReader.keepCast({.id = settings.lines.groups != LineGroups::none},
                            casts > 1 || lookAround ? tiles::Extent::whole : tiles::Extent::occupied);
     gbuffer.planes = graph.createInMemory("planes");
     gbuffer.memory = &surfaceReader;
@@ -307,7 +306,7 @@ struct Renderer::Impl {
     }
     if (light.visibility.valid()) {
       graph.leaveOut("pass shadow", "shadows are traced");
-    } else if (frame.shadowMap.depth) {
+    } else if (frame.shadowMap.drawn()) {
       light.visibility = addShadow(graph, frame.settings.shadows, frame.shadowMap, shadowUniforms, shaders,
                                    gbuffer, tile.width, tile.height, reader);
       if (effects.processor) graph.leaveOut("program of shadow", effects.reason);
@@ -432,7 +431,7 @@ void Renderer::Impl::drawShadowMap(Frame& frame) {
   const double texel = shadowTexelSize(pixelFootprint(frame.view, bounds), penumbra, thinnest);
   const View light = makeLightView(frame.view, frame.shade.lighting.key, bounds, texel, maxSize, penumbra);
   KeptShadowMap& kept = keptShadowMap;
-  if (kept.map.depth != nullptr && kept.map.light == light && kept.surface == frame.settings.surface &&
+  if (kept.map.drawn() && kept.map.light == light && kept.surface == frame.settings.surface &&
       kept.quadrics == quadricChoice.method && kept.translucent == frame.translucent) {
     frame.shadowMap = kept.map;
     stats.omissions.push_back({"pass shadow map", "the light and the scene are those of the picture before"});
@@ -440,21 +439,36 @@ void Renderer::Impl::drawShadowMap(Frame& frame) {
   }
   const Tile whole{0, 0, light.size.width, light.size.height};
   kept = {};
-  TextureLease texture = pool.lease("shadow map", {gl::TextureFormat::depth32f, whole.width, whole.height});
-  setView(light, whole, {0, 0});
+  const gl::TextureDesc desc{gl::TextureFormat::depth32f, whole.width, whole.height};
+  const bool inMemory = effects.processor && !frame.translucent && castsAll(frame.settings.surface);
+  TextureLease texture(nullptr, ReturnToPool{});
+  surfaceReader.begin(setView(light, whole, {0, 0}), whole.width, whole.height, true);
   FrameGraph graph(pool);
   GBufferRefs gbuffer;
-  gbuffer.depth = graph.import("shadow map", *texture, Clear::zero);
+  if (inMemory) {
+    graph.leaveOut("channel shadow map", "the processor casts it and looks it up");
+    surfaceReader.keepCast({.albedo = false, .normal = false, .id = false}, tiles::Extent::whole);
+    gbuffer.depth = graph.create("shadow map", desc);
+    gbuffer.planes = graph.createInMemory("shadow heights");
+    gbuffer.memory = &surfaceReader;
+  } else {
+    texture = pool.lease("shadow map", desc);
+    gbuffer.depth = graph.import("shadow map", *texture, Clear::zero);
+  }
   addScene(graph, light, whole, {0, 0}, gbuffer, frame.translucent ? Surfaces::apart : Surfaces::opaque,
            "shadow map: ");
   if (frame.translucent) graph.leaveOut("pass shadow map: surface", "what is translucent casts no shadow");
-  graph.want(gbuffer.depth);
+  graph.want(inMemory ? gbuffer.planes : gbuffer.depth);
   execute(graph);
   frame.shadowMap = {light, texture.get()};
   if (effects.processor) {
     if (shadowHeights.use_count() != 1) shadowHeights = std::make_shared<std::vector<float>>();
-    shadowHeights->resize(static_cast<std::size_t>(whole.width) * static_cast<std::size_t>(whole.height));
-    texture->read(whole.width, whole.height, whole.width, shadowHeights->data());
+    if (inMemory) {
+      surfaceReader.exchangeDepth(*shadowHeights);
+    } else {
+      shadowHeights->resize(static_cast<std::size_t>(whole.width) * static_cast<std::size_t>(whole.height));
+      texture->read(whole.width, whole.height, whole.width, shadowHeights->data());
+    }
     frame.shadowMap.heights = shadowHeights;
   }
   kept = {frame.shadowMap, frame.settings.surface, quadricChoice.method, frame.translucent,
@@ -523,7 +537,7 @@ void Renderer::Impl::drawTile(const Frame& frame, const Tile& part, const Pictur
   if (frame.layers.data() && dataApart) drawData(frame, part, texels);
   const int samples = frame.settings.samples;
   const auto setShadow = [&](int sample) {
-    if (frame.shadowMap.depth)
+    if (frame.shadowMap.drawn())
       shadowUniforms.set(frame.settings.shadows, frame.view, frame.shadowMap, sample, samples);
     if (frame.occlusion) occlusionBuffers.chooseDirections(sample, samples, tile);
     if (frame.traced) tracedLight.choose(sample, samples);

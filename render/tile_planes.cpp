@@ -8,10 +8,10 @@ tiles::PlaneChannels wantedPlanes(const PassContext& context, const GBufferRefs&
   tiles::PlaneChannels wanted{context.isLive(gbuffer.albedo), context.isLive(gbuffer.normal),
                               context.isLive(gbuffer.id), context.isLive(gbuffer.distance)};
   if (gbuffer.planes.valid()) {
-    const SurfaceChannels& channels = gbuffer.memory->kept();
-    wanted.albedo = wanted.albedo || channels.albedo;
-    wanted.normal = true;
-    wanted.id = wanted.id || channels.id;
+    const tiles::PlaneChannels& kept = gbuffer.memory->kept();
+    wanted.albedo = wanted.albedo || kept.albedo;
+    wanted.normal = wanted.normal || kept.normal;
+    wanted.id = wanted.id || kept.id;
   }
   return wanted;
 }

@@ -21,6 +21,7 @@ struct ShadowMap {
   View light;
   const gl::Texture* depth = nullptr;
   std::shared_ptr<const std::vector<float>> heights = {};  ///< the same in main memory, for a SurfaceReader
+  bool drawn() const { return depth != nullptr || heights != nullptr; }
 };
 
 /// A buffer for the pass's uniforms, which outlives the frames.

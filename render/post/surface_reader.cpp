@@ -14,7 +14,7 @@ void SurfaceReader::begin(const f32::ViewBlock& view, int width, int height, boo
   shades_ = shades;
 }
 
-void SurfaceReader::keepCast(const SurfaceChannels& channels, tiles::Extent extent) {
+void SurfaceReader::keepCast(const tiles::PlaneChannels& channels, tiles::Extent extent) {
   kept_ = channels;
   extent_ = extent;
 }

@@ -23,8 +23,8 @@ class SurfaceReader {
   /// What is read from now on is another frame's. shades: the processor shades it, too.
   void begin(const f32::ViewBlock& view, int width, int height, bool shades);
   /// Everything in the frame is cast by the processor, and these channels of this part of it are kept.
-  void keepCast(const SurfaceChannels& channels, tiles::Extent extent);
-  const SurfaceChannels& kept() const { return kept_; }
+  void keepCast(const tiles::PlaneChannels& channels, tiles::Extent extent);
+  const tiles::PlaneChannels& kept() const { return kept_; }
   tiles::Extent extent() const { return extent_; }
   /// Takes planes, of which those before have what is nearer, and gives others for them. Returns what is
   /// kept.
@@ -33,6 +33,8 @@ class SurfaceReader {
   /// Reads what has not been read of this frame.
   const effects::SurfacePlanes& read(const PassContext& context, const GBufferRefs& gbuffer,
                                      const SurfaceChannels& wanted = {});
+  /// Takes away the depth that is kept, and gives other memory for it.
+  void exchangeDepth(std::vector<float>& depth) { std::swap(cast_.depth, depth); }
   /// What an effect computes, pixel by pixel: if the processor shades the frame it stays in main memory.
   TextureRef createResult(FrameGraph& graph, const char* name, gl::TextureFormat format) const;
   /// Of a pass that writes nothing else.
@@ -64,7 +66,7 @@ class SurfaceReader {
  private:
   effects::SurfacePlanes planes_;
   tiles::Planes cast_;
-  SurfaceChannels kept_;
+  tiles::PlaneChannels kept_;
   tiles::Extent extent_ = tiles::Extent::whole;
   std::vector<float> depth_;
   std::vector<std::uint32_t> normal_, albedo_, id_;

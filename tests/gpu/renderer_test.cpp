@@ -126,7 +126,7 @@ TEST_F(RendererTest, WhereTheProcessorCastsAndShadesNothingGoesThroughTextures) 
   EXPECT_EQ(stats.passes[1].runs, 4);
   EXPECT_EQ(stats.programs, Names{});
   EXPECT_EQ(names(stats.textures), Names{});
-  EXPECT_TRUE(omitted(stats, "texture depth"));
+  EXPECT_TRUE(omitted(stats, "channel depth"));
   // What shaders compute of it gets the channels that it reads.
   RenderSettings settings = test::withSamples(1, QuadricMethod::tiles);
   settings.occlusion.on = true;
