@@ -109,6 +109,10 @@ class RenderRun {
 
 int RenderRun::run() {
   checkBeforeReading();
+  if (options_.resume) {  // of a run that was killed
+    const std::filesystem::path folder = std::filesystem::path(options_.output).parent_path();
+    removeAbandonedFiles(folder.empty() ? "." : folder);
+  }
   if (!options_.manifest.empty()) manifest_ = std::make_unique<Manifest>(options_.manifest, options_.resume);
   if (!options_.saveScene.empty()) sceneWriter_ = std::make_unique<SceneWriter>(options_.saveScene);
   if (many_) deferInterrupt();

@@ -2,6 +2,8 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <signal.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -9,6 +11,7 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <limits>
 #include <system_error>
 #include <utility>
 
@@ -18,6 +21,8 @@ namespace meniscus {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* kTemporaryName = ".meniscus-{}-{}.tmp";
 
 // The names of the temporary files that exist, where a signal handler can read them: no allocation, no lock.
 // A name is valid while its slot is `listed`. Files beyond the last slot are written all the same, only not
@@ -137,12 +142,13 @@ void OutputFile::openTemporary() {
   static std::atomic<unsigned> counter{0};
   int descriptor = -1;
   do {
-    temporary_ = folderOf(target_) / fmt::format(".meniscus-{}-{}.tmp", getpid(), counter++);
+    temporary_ = folderOf(target_) / fmt::format(kTemporaryName, getpid(), counter++);
     slot_ = listTemporary(temporary_.string());
     descriptor = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor < 0) unlistTemporary(slot_);
   } while (descriptor < 0 && errno == EEXIST);
   if (descriptor < 0) throwWriteError(path_, errno);
+  static_cast<void>(flock(descriptor, LOCK_EX | LOCK_NB));  // says that it is being written
   // The new file keeps the permissions of the one it replaces; where that is not allowed, the usual ones are
   // right.
   if (replaces) static_cast<void>(fchmod(descriptor, old.st_mode & 0777));
@@ -186,6 +192,24 @@ void writeTextFile(const fs::path& path, std::string_view text) {
   OutputFile file(path);
   file.write(text);
   file.commit();
+}
+
+void removeAbandonedFiles(const fs::path& folder) {
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    long process = 0;
+    unsigned number = 0;
+    const std::string name = entry.path().filename().string();
+    if (std::sscanf(name.c_str(), ".meniscus-%ld-%u.tmp", &process, &number) != 2 ||
+        name != fmt::format(kTemporaryName, process, number) || !entry.is_regular_file(error) ||
+        process < 1 || process > std::numeric_limits<pid_t>::max())
+      continue;
+    if (kill(static_cast<pid_t>(process), 0) == 0 || errno != ESRCH) continue;
+    const int descriptor = open(entry.path().c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+    if (descriptor < 0) continue;
+    if (flock(descriptor, LOCK_EX | LOCK_NB) == 0) unlink(entry.path().c_str());
+    close(descriptor);
+  }
 }
 
 void removeTemporaryFiles() noexcept {

@@ -1,6 +1,7 @@
 // `meniscus render --scene`, batches and films: the program as scripts use it.
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <cstring>
@@ -240,7 +241,8 @@ TEST_F(Scenes, aRunIsResumedByContent) {
 }
 
 TEST_F(Scenes, anInterruptFinishesThePictureAndTheRestIsResumed) {
-  Words command{"render", "-q", "--size", "500x400", "-o", "{stem}.png", "--manifest", "m.jsonl", "--resume"};
+  Words command{"render", "-q",         "--size",     "500x400", "--samples", "64",
+                "-o",     "{stem}.png", "--manifest", "m.jsonl", "--resume"};
   for (int i = 0; i < 8; ++i) {
     const std::string name = "m" + std::to_string(i) + ".pdb";
     std::filesystem::copy_file(molecule("1ubq.pdb"), folder_ / name);
@@ -264,6 +266,21 @@ TEST_F(Scenes, anInterruptFinishesThePictureAndTheRestIsResumed) {
   for (int i = 1; i < 8; ++i)
     EXPECT_EQ(readPicture(folder_ / ("m" + std::to_string(i) + ".png")).pixels,
               readPicture(folder_ / "m0.png").pixels);
+}
+
+TEST_F(Scenes, whatAKilledRunLeftIsTidiedUpAndTheRestIsResumed) {
+  const Words command = with(
+      {molecule("c60.pdb"), molecule("133d.pdb"), "-o", "{stem}.png", "--manifest", "m.jsonl", "--resume"},
+      kSmall);
+  // No process has such a number; the second file's has.
+  const std::string left = ".meniscus-4194305-0.tmp", writing = fmt::format(".meniscus-{}-7.tmp", getpid());
+  writeFile(folder_ / left, "half");
+  writeFile(folder_ / writing, "half");
+  writeFile(folder_ / "c60.png", "of before");
+  writeFile(folder_ / "m.jsonl", "{\"input\":\"c60");
+  expectSuccess(render(command));
+  EXPECT_EQ(folder_.names(), (Names{writing, "133d.png", "c60.png", "m.jsonl"}));
+  EXPECT_EQ(readPicture(folder_ / "c60.png").pixels.size(), readPicture(folder_ / "133d.png").pixels.size());
 }
 
 // Too many atoms behind a pixel are the file's doing, not the driver's.
