@@ -163,7 +163,10 @@ void lookUpRows(const ShadowTask& task, int firstRow, int lastRow, std::uint16_t
       storeShares(hn::IfThenElseZero(hn::And(wanted, lit > zero), all(1.0f)), here, out + at);
       const M agree = hn::Or(lit == zero, lit == most);
       const M disagree = task.probes > 0 ? hn::AndNot(agree, wanted) : wanted;
-      if (!hn::AllFalse(f, disagree))
+      if (hn::AllTrue(f, disagree)) {  // a whole vector already
+        const V sum = lit + litSamples(task, r, task.probes, task.samples);
+        storeShares(sum * all(1 / static_cast<float>(task.samples)), here, out + at);
+      } else if (!hn::AllFalse(f, disagree))
         penumbra.add(disagree, r, lit, hn::Iota(I(), static_cast<std::int32_t>(at)));
     }
   }
