@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <numeric>
 
-#include "core/error.h"
 #include "render/gl/storage.h"
 #include "render/surface/ball_texture.h"
 #include "render/surface/bezier_statistics.h"
@@ -22,9 +21,8 @@ namespace {
 constexpr SurfaceParameter kBezierParameters[] = {
     {"tolerance", "width to which a root is narrowed down, as a share of the smallest support around it",
      1e-5, 1e-7, 0.1, false},
-    {"list", "ids that a pixel's list can hold at first", 14, 1, 1024, true},
-    {"repair", "1: pixels whose list is too short are done again with a longer one; 0: as the paper does", 1,
-     0, 1, true},
+    {"list", "ids that a pixel's list can hold", 14, 1, 1024, true},
+    {"repair", "1: pixels whose list is too short go on without one; 0: as the paper does", 1, 0, 1, true},
     {"culling", "1: balls behind the cores of others are not drawn (only if no coefficient is negative)", 1,
      0, 1, true},
     {"tiles", "side of the grid of screen tiles that are peeled each for itself; 0: the screen is one", 16, 0,
@@ -35,7 +33,6 @@ constexpr SurfaceParameter kBezierParameters[] = {
 // Storage blocks end at 128 MiB on the reference driver.
 constexpr std::int64_t kListBytes = std::int64_t{96} << 20;
 constexpr int kHeaderSlots = 5;  // shaders/include/bezier_lists.glsl
-constexpr int kListGrowth = 8;
 // Of 0x20000000 steps on either side some are left out (shaders/include/bezier.glsl).
 constexpr double kSteps = 5.2e8;
 
@@ -45,19 +42,24 @@ struct BezierBlock {
   glm::ivec4 region, list;
 };
 
-// Control of shaders/surface/bezier_step.frag, before its cells.
-struct PeelControl {
-  std::uint32_t overflow = 0;
-  std::uint32_t box[4] = {0xFFFFFFFFu, 0xFFFFFFFFu, 0, 0};
+// Control of shaders/include/bezier_pixel.glsl: pixels for which the driver ended a loop, and then its cells.
+using PeelControl = std::uint32_t;
+
+// Cell of shaders/include/bezier_pixel.glsl.
+struct CellState {
+  std::uint32_t unfinished, waiting, least, walks;
 };
 
-// Cell of shaders/surface/bezier_step.frag.
-struct CellState {
-  std::uint32_t unfinished, waiting, least;
+// CellBall of shaders/include/bezier_balls.glsl.
+struct CellBall {
+  std::uint32_t ball, begins;
 };
+constexpr std::uint32_t kBehindAll = 0xFFFFFFFFu;
 
 // Balls of a cell that are drawn at first; twice as many whenever a pixel waits for more.
 constexpr int kFirstWindow = 32;
+// Layers after which pixels go on without lists: there are few left of them, which layers cost most for.
+constexpr int kMostLayers = 64;
 // Every so many layers it is found out which balls all pixels have passed.
 constexpr int kLeastPeriod = 8;
 
@@ -99,8 +101,6 @@ class Bezier : public SurfaceMethod {
   // What is being drawn of it.
   struct Region {
     ScreenRect rect;
-    int list;
-    bool again;
     RegionTargets targets;
     std::vector<PeelCell> cells;
     std::vector<PeelInstance> instances;
@@ -109,22 +109,27 @@ class Bezier : public SurfaceMethod {
     std::vector<StretchRange> stretches;
     std::vector<std::size_t> active;  // cells
     std::vector<StepInstance> steps;
+    std::vector<std::uint32_t> blocks;  // as shaders/include/bezier_pixel.glsl marks them
+    std::vector<CellState> states;      // of the cells
+    int layer = 0;
     bool measured = false;
+    std::vector<std::int32_t> walkFrom;  // of each cell with pixels that keep no list: its first CellBall
   };
 
   void draw(const PassContext& context, ShaderLibrary& shaders, const SurfaceTarget& target);
-  std::int64_t mostPixels(int list) const;
-  void drawRegion(Frame& frame, const ScreenRect& rect, int list, bool again);
-  void setUniforms(const Frame& frame, const Region& region);
+  void drawRegion(Frame& frame, const ScreenRect& rect);
+  void setUniforms(const Region& region);
   void uploadInstances(const Region& region);
   void cull(Frame& frame, Region& region);
   void peel(Frame& frame, Region& region);
-  void listUnfinished(const Frame& frame, Region& region, const std::vector<std::uint32_t>& blocks,
-                      std::uint32_t layer);
-  void moveWindows(const Frame& frame, Region& region, const std::vector<CellState>& states,
-                   std::uint32_t layer);
+  void listUnfinished(const Frame& frame, Region& region);
+  void moveWindows(const Frame& frame, Region& region);
   void peelLayer(Frame& frame, const Region& region);
-  void step(Frame& frame, const Region& region, int layer);
+  void step(Frame& frame, const Region& region);
+  void drawSteps(const Region& region, unsigned program);
+  void readStates(Region& region);
+  void walk(Frame& frame, Region& region);
+  void uploadCellBalls(const Frame& frame, Region& region);
   int firstNotPassed(const Frame& frame, const Region& region, std::size_t cell, std::uint32_t least) const;
   void shade(Frame& frame, const Region& region);
   void drawCells(const Region& region, const std::vector<PeelCell>& cells) const;
@@ -136,7 +141,7 @@ class Bezier : public SurfaceMethod {
   const MetaballField* field_ = nullptr;
   std::vector<float> coreShares_;
   gl::Object vertexArray_, stepArray_;
-  gl::Storage instances_, steps_, blocks_, balls_, lists_, control_, seen_, spilled_;
+  gl::Storage instances_, steps_, blocks_, balls_, lists_, control_, seen_, cellBalls_;
   BezierStatistics statistics_;
   BallTexture ballTexture_{sizeof(ProjectedBall) / 16};  // tBalls of shaders/include/field.glsl
   gl::Buffer fieldUniforms_, bezierUniforms_;
@@ -213,30 +218,23 @@ void Bezier::draw(const PassContext& context, ShaderLibrary& shaders, const Surf
   balls_.reserve(ballBytes);
   balls_.write(frame.projected.balls.data(), ballBytes);
   ballTexture_.upload(frame.projected.balls.data(), frame.projected.balls.size());
-  spilled_.reserve(static_cast<std::uint64_t>(frame.screen.pixels()) * 4);
-  spilled_.zero();
   fieldUniforms_.update(&frame.projected.block);
   glBindBufferBase(GL_UNIFORM_BUFFER, 1, fieldUniforms_.object.name());
   glBindBufferBase(GL_UNIFORM_BUFFER, 2, bezierUniforms_.object.name());
   balls_.bindStorage(0);
-  spilled_.bindStorage(4);
   statistics_.counts.bindStorage(5);
 
-  for (const ScreenRect& rect : splitRect(frame.screen, mostPixels(list_)))
-    drawRegion(frame, rect, list_, false);
+  const std::int64_t mostPixels = kListBytes / (4 * (std::int64_t{list_} + kHeaderSlots));
+  for (const ScreenRect& rect : splitRect(frame.screen, mostPixels)) drawRegion(frame, rect);
   statistics_.ballsInView += static_cast<double>(frame.projected.balls.size());
   statistics_.ballsLeft += static_cast<double>(std::count(frame.left.begin(), frame.left.end(), true));
   context.bindTarget();
 }
 
-std::int64_t Bezier::mostPixels(int list) const {
-  return kListBytes / (4 * (std::int64_t{list} + kHeaderSlots));
-}
-
-// The region's surface into the G-buffer. Pixels whose list is too short are left out and, if they are to be
-// repaired, drawn again with a longer one; `again`: only those that were left out.
-void Bezier::drawRegion(Frame& frame, const ScreenRect& rect, int list, bool again) {
-  Region region{rect, list, again, {}, {}, {}, 1, {}, {}, {}, {}};
+// The region's surface into the G-buffer.
+void Bezier::drawRegion(Frame& frame, const ScreenRect& rect) {
+  Region region;
+  region.rect = rect;
   region.step = std::exp2(std::ceil(std::log2(frame.projected.reach / kSteps)));
   region.cells = makeCells(frame.projected, frame.screen, rect, tiles_, region.instances);
   if (region.cells.empty()) return;
@@ -254,17 +252,14 @@ void Bezier::drawRegion(Frame& frame, const ScreenRect& rect, int list, bool aga
   t.step = pool.framebuffer({t.lastSteps.get(), t.lastKeys.get()}, nullptr);
 
   lists_.reserve(static_cast<std::uint64_t>(rect.pixels()) * 4 *
-                 static_cast<std::uint64_t>(list + kHeaderSlots));
+                 static_cast<std::uint64_t>(list_ + kHeaderSlots));
   lists_.bindStorage(1);
-  // The list, four textures, and whether it was too short.
-  statistics_.mostBytesPerPixel =
-      std::max(statistics_.mostBytesPerPixel, 4.0 * (list + kHeaderSlots + 4 + 1));
+  // The list and four textures.
+  statistics_.mostBytesPerPixel = std::max(statistics_.mostBytesPerPixel, 4.0 * (list_ + kHeaderSlots + 4));
   control_.reserve(sizeof(PeelControl) + sizeof(CellState) * region.cells.size());
   control_.zero();
-  const PeelControl fresh;
-  control_.write(&fresh, sizeof fresh);
   control_.bindStorage(2);
-  setUniforms(frame, region);
+  setUniforms(region);
   uploadInstances(region);
   glViewport(0, 0, rect.width, rect.height);
   glEnable(GL_SCISSOR_TEST);
@@ -272,29 +267,22 @@ void Bezier::drawRegion(Frame& frame, const ScreenRect& rect, int list, bool aga
   for (const PeelInstance& instance : region.instances) frame.left[instance.ball] = true;
   if (!region.cells.empty()) {
     peel(frame, region);
+    walk(frame, region);
     shade(frame, region);
   }
   glDisable(GL_SCISSOR_TEST);
-  if (region.cells.empty() || !repair_) return;
-
-  PeelControl control;
-  control_.read(&control, sizeof control);
-  if (control.overflow == 0) return;
-  MENISCUS_CHECK(list < static_cast<int>(frame.projected.balls.size()));
-  ++statistics_.repairs;
-  const int longer = std::min(list * kListGrowth, static_cast<int>(frame.projected.balls.size()));
-  const auto at = [&](int i) { return static_cast<int>(control.box[i]); };
-  const ScreenRect spilled{rect.x + at(0), rect.y + at(1), at(2) - at(0) + 1, at(3) - at(1) + 1};
-  region.targets = {};
-  for (const ScreenRect& part : splitRect(spilled, mostPixels(longer))) drawRegion(frame, part, longer, true);
+  if (region.walkFrom.empty()) return;
+  PeelControl exhausted = 0;
+  control_.read(&exhausted, sizeof exhausted);
+  checkLoops("bezier", exhausted);
 }
 
-void Bezier::setUniforms(const Frame& frame, const Region& region) {
+void Bezier::setUniforms(const Region& region) {
   BezierBlock block;
   block.steps = {static_cast<float>(region.step), static_cast<float>(1 / region.step),
                  static_cast<float>(tolerance_), 0.0f};
   block.region = {region.rect.x, region.rect.y, region.rect.width, region.rect.height};
-  block.list = {region.list, repair_ ? 1 : 0, region.again ? 1 : 0, frame.screen.width};
+  block.list = {list_, repair_ ? kMostLayers : 0, 2, 0};
   bezierUniforms_.update(&block);
 }
 
@@ -366,33 +354,40 @@ void Bezier::peel(Frame& frame, Region& region) {
     region.stretches.push_back(stretchRange(frame.view, frame.tile, region.rect, region.cells[i].rect));
   }
   // Blocks are read back layer by layer; at first all count as marked with layer 0.
-  std::vector<std::uint32_t> blocks(static_cast<std::size_t>(blocksAlong(region.rect.width)) *
-                                    static_cast<std::size_t>(blocksAlong(region.rect.height)));
-  blocks_.reserve(blocks.size() * 4);
-  blocks_.write(blocks.data(), blocks.size() * 4);
+  region.blocks.assign(static_cast<std::size_t>(blocksAlong(region.rect.width)) *
+                           static_cast<std::size_t>(blocksAlong(region.rect.height)),
+                       0);
+  blocks_.reserve(region.blocks.size() * 4);
+  blocks_.write(region.blocks.data(), region.blocks.size() * 4);
   blocks_.bindStorage(6);
-  std::vector<CellState> states(cells);
-  for (int layer = 1; !region.active.empty(); ++layer) {
-    region.measured = layer % kLeastPeriod == 0;
+  region.states.assign(cells, {});
+  for (region.layer = 1; !region.active.empty(); ++region.layer) {
+    region.measured = region.layer % kLeastPeriod == 0;
     if (region.measured) {
-      for (CellState& state : states) state.least = 0xFFFFFFFFu;
-      control_.write(states.data(), states.size() * sizeof(CellState), sizeof(PeelControl));
+      for (CellState& state : region.states) state.least = 0xFFFFFFFFu;
+      control_.write(region.states.data(), cells * sizeof(CellState), sizeof(PeelControl));
     }
-    listUnfinished(frame, region, blocks, static_cast<std::uint32_t>(layer) - 1);
+    listUnfinished(frame, region);
     peelLayer(frame, region);
-    step(frame, region, layer);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-    control_.read(states.data(), states.size() * sizeof(CellState), sizeof(PeelControl));
-    blocks_.read(blocks.data(), blocks.size() * 4);
+    step(frame, region);
+    readStates(region);
     ++statistics_.layers;
-    statistics_.cellLayers += static_cast<double>(region.active.size());
-    moveWindows(frame, region, states, static_cast<std::uint32_t>(layer));
+    moveWindows(frame, region);
   }
 }
 
+// After a layer: cells that are finished are no longer active.
+void Bezier::readStates(Region& region) {
+  glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+  control_.read(region.states.data(), region.states.size() * sizeof(CellState), sizeof(PeelControl));
+  blocks_.read(region.blocks.data(), region.blocks.size() * 4);
+  statistics_.cellLayers += static_cast<double>(region.active.size());
+  const auto layer = static_cast<std::uint32_t>(region.layer);
+  std::erase_if(region.active, [&](std::size_t i) { return region.states[i].unfinished != layer; });
+}
+
 // What has to be looked at in the next layer.
-void Bezier::listUnfinished(const Frame& frame, Region& region, const std::vector<std::uint32_t>& blocks,
-                            std::uint32_t layer) {
+void Bezier::listUnfinished(const Frame& frame, Region& region) {
   region.steps.clear();
   for (const std::size_t i : region.active) {
     const PeelCell& cell = region.cells[i];
@@ -403,18 +398,17 @@ void Bezier::listUnfinished(const Frame& frame, Region& region, const std::vecto
       bound = stepAtLeast(frame.projected.depths[next.ball].x, region.stretches[i], region.step);
     }
     const StepInstance model{{}, static_cast<std::int32_t>(i), static_cast<std::int32_t>(bound)};
-    addUnfinished(cell, region.rect, blocks, layer, model, region.steps, window.reach);
+    addUnfinished(cell, region.rect, region.blocks, static_cast<std::uint32_t>(region.layer) - 1, model,
+                  region.steps, window.reach);
   }
 }
 
-// Cells that are finished are no longer active; the others' windows follow their pixels.
-void Bezier::moveWindows(const Frame& frame, Region& region, const std::vector<CellState>& states,
-                         std::uint32_t layer) {
-  std::erase_if(region.active, [&](std::size_t i) { return states[i].unfinished != layer; });
+// The windows follow their pixels.
+void Bezier::moveWindows(const Frame& frame, Region& region) {
   for (const std::size_t i : region.active) {
     PeelWindow& window = region.windows[i];
-    if (region.measured) window.from = firstNotPassed(frame, region, i, states[i].least);
-    if (states[i].waiting != layer) continue;
+    if (region.measured) window.from = firstNotPassed(frame, region, i, region.states[i].least);
+    if (region.states[i].waiting != static_cast<std::uint32_t>(region.layer)) continue;
     const int more = std::max(kFirstWindow, 2 * (window.to - window.from));
     window.to = std::min(region.cells[i].count, window.from + more);
   }
@@ -454,34 +448,90 @@ void Bezier::peelLayer(Frame& frame, const Region& region) {
 
 // Each texel of the last events is read and written by one and the same fragment, which OpenGL 4.5 allows
 // (§9.3.1); glTextureBarrier() comes between layers.
-void Bezier::step(Frame& frame, const Region& region, int layer) {
+void Bezier::step(Frame& frame, const Region& region) {
   glBindFramebuffer(GL_FRAMEBUFFER, region.targets.step);
   glTextureBarrier();
   glBindTextureUnit(2, region.targets.events->object.name());
   glBindTextureUnit(3, region.targets.eventKeys->object.name());
   glBindTextureUnit(4, frame.context.texture(frame.gbuffer.depth).object.name());
   ballTexture_.bind(5);
+  drawSteps(region,
+            frame.shaders.program("surface/bezier_step.vert", "surface/bezier_step.frag", frame.flags));
+}
+
+void Bezier::drawSteps(const Region& region, unsigned program) {
   const std::uint64_t bytes = region.steps.size() * sizeof(StepInstance);
   steps_.reserve(bytes);
   steps_.write(region.steps.data(), bytes);
   glVertexArrayVertexBuffer(stepArray_.name(), 0, steps_.name(), 0, sizeof(StepInstance));
   glBindVertexArray(stepArray_.name());
-  glUseProgram(frame.shaders.program("surface/bezier_step.vert", "surface/bezier_step.frag", frame.flags));
+  glUseProgram(program);
   glUniform2f(0, static_cast<float>(region.rect.width), static_cast<float>(region.rect.height));
-  glUniform2i(1, layer, region.measured ? 1 : 0);
+  glUniform2i(1, region.layer, region.measured ? 1 : 0);
   glScissor(0, 0, region.rect.width, region.rect.height);
   glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(region.steps.size()));
 }
 
+// Pixels whose list was too short go on without one, in as many draws as it takes.
+void Bezier::walk(Frame& frame, Region& region) {
+  for (std::size_t i = 0; i < region.cells.size(); ++i)
+    if (region.states[i].walks != 0) region.active.push_back(i);
+  if (region.active.empty()) return;
+  uploadCellBalls(frame, region);
+  region.measured = false;
+  std::fill(region.blocks.begin(), region.blocks.end(), static_cast<std::uint32_t>(region.layer) - 1);
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);  // all is written to buffers
+  const unsigned program =
+      frame.shaders.program("surface/bezier_step.vert", "surface/bezier_walk.frag", frame.flags);
+  for (; !region.active.empty(); ++region.layer) {
+    region.steps.clear();
+    for (const std::size_t i : region.active) {
+      const StepInstance model{{}, static_cast<std::int32_t>(i), region.walkFrom[i]};
+      addUnfinished(region.cells[i], region.rect, region.blocks, static_cast<std::uint32_t>(region.layer) - 1,
+                    model, region.steps, region.windows[i].reach);
+    }
+    drawSteps(region, program);
+    readStates(region);
+    ++statistics_.walks;
+  }
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+}
+
+// The balls of the cells that are active, each cell's with one behind all others at their end.
+void Bezier::uploadCellBalls(const Frame& frame, Region& region) {
+  std::vector<CellBall> balls;
+  region.walkFrom.assign(region.cells.size(), 0);
+  for (const std::size_t i : region.active) {
+    region.walkFrom[i] = static_cast<std::int32_t>(balls.size());
+    const PeelCell& cell = region.cells[i];
+    for (int at = cell.first; at < cell.first + cell.count; ++at) {
+      const std::uint32_t ball = region.instances[static_cast<std::size_t>(at)].ball;
+      const double begins = stepAtLeast(frame.projected.depths[ball].x, region.stretches[i], region.step);
+      balls.push_back({ball, static_cast<std::uint32_t>(begins)});
+    }
+    balls.push_back({0, kBehindAll});
+  }
+  cellBalls_.reserve(balls.size() * sizeof(CellBall));
+  cellBalls_.write(balls.data(), balls.size() * sizeof(CellBall));
+  cellBalls_.bindStorage(3);
+}
+
 void Bezier::shade(Frame& frame, const Region& region) {
   frame.context.bindTarget();
-  const ShaderFlags flags = channelFlags(frame.context, frame.gbuffer);
-  glUseProgram(frame.shaders.program("surface/near_plane.vert", "surface/bezier_surface.frag", flags));
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_GREATER);
-  for (const PeelCell& cell : region.cells) {
-    scissorTo(cell, region.rect);
-    glDrawArrays(GL_TRIANGLES, 0, 3);
+  for (const bool walked : {false, true}) {
+    ShaderFlags flags = channelFlags(frame.context, frame.gbuffer);
+    if (walked) flags.insert("WALKED");
+    unsigned program = 0;
+    for (std::size_t i = 0; i < region.cells.size(); ++i) {
+      if ((region.states[i].walks != 0) != walked) continue;
+      if (program == 0)
+        program = frame.shaders.program("surface/near_plane.vert", "surface/bezier_surface.frag", flags);
+      glUseProgram(program);
+      scissorTo(region.cells[i], region.rect);
+      glDrawArrays(GL_TRIANGLES, 0, 3);
+    }
   }
   glDisable(GL_DEPTH_TEST);
 }
@@ -498,7 +548,7 @@ std::vector<ResourceStats> Bezier::buffers() const {
   add("surface: balls", bytesOfBalls());
   add("surface: instances", instances_.bytes());
   add("surface: lists", lists_.bytes());
-  add("surface: pixels spilled", spilled_.bytes());
+  add("surface: balls of cells", cellBalls_.bytes());
   add("surface: control", control_.bytes() + seen_.bytes() + statistics_.counts.bytes());
   return out;
 }

@@ -7,9 +7,11 @@ namespace meniscus {
 SurfaceStats BezierStatistics::take() {
   SurfaceStats stats;
   stats.method = "bezier";
-  double events = 0, solved = 0, hits = 0, mostInPiece = 0, longest = 0;
+  double events = 0, solved = 0, hits = 0, mostInPiece = 0, longest = 0, walked = 0, looks = 0;
   for (const BezierCounts& c : counts.take(stats)) {
     events += c.events;
+    walked += c.walked;
+    looks += c.looks;
     solved += c.solved;
     hits += c.common.hits;
     mostInPiece = std::max<double>(mostInPiece, c.mostInPiece);
@@ -25,9 +27,11 @@ SurfaceStats BezierStatistics::take() {
                    {"layers", layers},
                    {"layers of tiles", cellLayers},
                    {"rectangles drawn in layers", instancesDrawn},
-                   {"repairs", repairs},
+                   {"draws without lists", walks},
+                   {"pixels without lists", walked},
+                   {"looks at their balls", looks},
                    {"most bytes per pixel", mostBytesPerPixel}};
-  ballsInView = ballsLeft = layers = cellLayers = instancesDrawn = repairs = mostBytesPerPixel = 0;
+  ballsInView = ballsLeft = layers = cellLayers = instancesDrawn = walks = mostBytesPerPixel = 0;
   return stats;
 }
 

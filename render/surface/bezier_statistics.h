@@ -5,10 +5,10 @@
 
 namespace meniscus {
 
-/// Sums of shaders/surface/bezier_step.frag.
+/// Sums of shaders/include/bezier_pixel.glsl.
 struct BezierCounts {
   RayCounts common;
-  std::uint32_t events, solved, mostInPiece, longest;
+  std::uint32_t events, solved, mostInPiece, longest, walked, looks;
 };
 
 struct BezierStatistics {
@@ -16,7 +16,7 @@ struct BezierStatistics {
   SurfaceStats take();
 
   RayCountCopies<BezierCounts> counts;
-  double ballsInView = 0, ballsLeft = 0, layers = 0, cellLayers = 0, instancesDrawn = 0, repairs = 0,
+  double ballsInView = 0, ballsLeft = 0, layers = 0, cellLayers = 0, instancesDrawn = 0, walks = 0,
          mostBytesPerPixel = 0;
 };
 

@@ -1,13 +1,11 @@
 #include "render/surface/list_caster.h"
 
-#include <fmt/format.h>
 #include <glad/gl.h>
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "core/error.h"
 #include "render/post/fullscreen.h"
 
 namespace meniscus {
@@ -153,11 +151,7 @@ void ListCaster::walk(const ListTarget& target, const ListRegion& region) {
     drawFullscreen(program);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
     control_.read(&control, sizeof control);
-    if (control.exhausted > 0)
-      throw InputError(fmt::format(
-          "surface method {}: more balls overlap in {} pixels than the driver's loops can go through; use "
-          "--surface-method tiles",
-          method_, control.exhausted));
+    checkLoops(method_, control.exhausted);
   }
 }
 

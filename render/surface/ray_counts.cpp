@@ -1,8 +1,11 @@
 #include "render/surface/ray_counts.h"
 
+#include <fmt/format.h>
 #include <glad/gl.h>
 
 #include <algorithm>
+
+#include "core/error.h"
 
 namespace meniscus {
 
@@ -14,6 +17,14 @@ void addCounts(SurfaceStats& stats, const RayCounts& counts) {
   stats.overflow += counts.overflow;
   stats.grazing += counts.grazing;
   stats.notConverged += counts.unfinished;
+}
+
+void checkLoops(std::string_view method, std::uint32_t pixels) {
+  if (pixels == 0) return;
+  throw InputError(fmt::format(
+      "surface method {}: more balls overlap in {} pixels than the driver's loops can go through; use "
+      "--surface-method tiles",
+      method, pixels));
 }
 
 void takeCopies(gl::Storage& buffer, void* copies, std::uint64_t bytes) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string_view>
 
 #include "render/gl/storage.h"
 #include "render/render_stats.h"
@@ -16,6 +17,9 @@ struct RayCounts {
 
 /// All but the hits, which each method has its own word for.
 void addCounts(SurfaceStats& stats, const RayCounts& counts);
+
+/// Throws InputError if the driver ended loops (shaders/include/loops.glsl) of any pixels.
+void checkLoops(std::string_view method, std::uint32_t pixels);
 
 /// Reads a buffer that shaders have written to and sets it to zero.
 void takeCopies(gl::Storage& buffer, void* copies, std::uint64_t bytes);

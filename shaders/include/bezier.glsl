@@ -8,8 +8,8 @@
 layout(std140, binding = 2) uniform BezierUniforms {
   vec4 uSteps;  // x: length of a step, a power of two; y: 1 / x; z: tolerance, as a share of a support; w: 0
   ivec4 uRegion;  // of the target: x, y of its corner; width, height
-  ivec4 uList;  // x: most ids in a pixel's list; y: 1 if a longer one is repaired; z: 1 in a repair; w: width
-                // of the target
+  ivec4 uList;    // x: most ids in a pixel's list; y: the layer after which pixels go on without one, as they
+                  // do if it is too short, 0: neither; z: 2; w: 0
 };
 
 const int kMiddleStep = 0x20000000;

@@ -19,10 +19,15 @@ layout(std430, binding = 0) readonly restrict buffer Balls {
 // numbers from buffers.
 layout(binding = 5) uniform sampler2D tBalls;
 
+// Its coefficient and inverseR2.
+vec2 fetchShare(uint index) {
+  return texelFetch(tBalls, ballTexel(index, 4u) + ivec2(3, 0), 0).xy;
+}
+
 Ball fetchBall(uint index) {
   Ball ball;
   ball.projection = fetchProjection(tBalls, index);
-  vec2 rest = texelFetch(tBalls, ballTexel(index, 4u) + ivec2(3, 0), 0).xy;
+  vec2 rest = fetchShare(index);
   ball.coefficient = rest.x;
   ball.inverseR2 = rest.y;
   ball.color = 0u;

@@ -10,8 +10,7 @@
 #include "include/bernstein.glsl"
 #include "include/bezier.glsl"
 #include "include/bezier_lists.glsl"
-#define MORE_SUMS uint events, solved, mostInPiece, longest;
-#include "include/sums.glsl"
+#include "include/bezier_pixel.glsl"
 
 layout(binding = 0) uniform usampler2D tLastStep;
 layout(binding = 1) uniform usampler2D tLastKey;
@@ -23,45 +22,7 @@ layout(binding = 4) uniform sampler2D tDepth;
 layout(location = 0) out uint oLastStep;
 layout(location = 1) out uint oLastKey;
 
-struct Cell {
-  uint unfinished;  // the last layer after which a pixel was not finished
-  uint waiting;     // the last layer in which a pixel waited for balls that were not drawn
-  uint least;       // the least of the pixels' last events, in layers that measure it
-};
-layout(std430, binding = 2) restrict buffer Control {
-  uint uOverflow;  // pixels whose list was too short
-  uint uBox[4];    // around them: least x, y, largest x, y
-  Cell uCells[];
-};
-layout(std430, binding = 4) restrict buffer Spilled {
-  uint uSpilled[];  // of each pixel of the target: 1 if its list was too short
-};
-
-layout(std430, binding = 6) writeonly restrict buffer Blocks {
-  uint uBlocks[];  // of each 8 x 8 pixels of the region: the last layer after which one was not finished
-};
-
-layout(location = 0) flat in ivec2 vCell;
-layout(location = 1) uniform ivec2 uLayer;  // which; 1 if uCells[].least is wanted
-
-struct Found {
-  bool hit;
-  float offset;
-};
-
-const Found kNothing = Found(false, 0.0);
-
-// §3.1, "single case".
-Found meetCore(Ball ball, SceneRay ray, Split start, float size, inout uint status) {
-  BallRay b = ballOnRay(ball.projection, ray);
-  vec2 ends = coreEnds(placeBetween(start, b.middle), halfCoreChord(ball.projection.eye.w, b.nearest));
-  if ((status & (kInside | kOutside)) == 0u) status |= isInCore(ends, 0.0) ? kInside : kOutside;
-  float at = crossCore(ends, 0.0, size, (status & kInside) != 0u);
-  return at < kNone ? Found(true, at) : kNothing;
-}
-
-Found meetSum(ivec2 texel, uint count, SceneRay ray, Split start, float size, inout uint status,
-              inout Effort effort) {
+Found meetList(ivec2 texel, uint count, SceneRay ray, Split start, float size, inout Pixel p) {
   Polygon sum = constantPolygon(-uField.x);
   float least = 1e30;
   for (uint i = 0u; i < count; ++i) {
@@ -71,68 +32,7 @@ Found meetSum(ivec2 texel, uint count, SceneRay ray, Split start, float size, in
     addShare(sum, windowOn(middle, b.halfChord2, ball.inverseR2, 0.0, size), ball.coefficient);
     least = min(least, ball.projection.place.y);
   }
-  if ((status & (kInside | kOutside)) == 0u) status |= sum.c[0] > 0.0 ? kInside : kOutside;
-  if ((status & kInside) != 0u) {
-    for (int k = 0; k <= fieldDegree(); ++k) sum.c[k] = -sum.c[k];
-  }
-  // Float32 resolves 1e-7 of the interval.
-  float root = firstRoot(sum, max(uSteps.z * sqrt(least) / size, 5e-7), effort);
-  return root <= 1.0 ? Found(true, root * size) : kNothing;
-}
-
-// What a pixel remembers from layer to layer.
-struct Pixel {
-  uint status;
-  uint events, pieces, solved, mostInPiece;
-  Effort effort;
-};
-
-Pixel freshPixel() {
-  return Pixel(0u, 0u, 0u, 0u, 0u, Effort(0, false, false));
-}
-
-Pixel loadPixel(ivec2 texel) {
-  Pixel p = freshPixel();
-  p.status = uLists[slot(texel, kStatus)];
-  p.events = uLists[slot(texel, kPlace)];
-  uint effort = uLists[slot(texel, kEffort)], solved = uLists[slot(texel, kSolved)];
-  p.pieces = effort >> 16;
-  p.effort.iterations = int(effort & 0xFFFFu);
-  p.mostInPiece = solved >> 16;
-  p.solved = solved & 0xFFFFu;
-  return p;
-}
-
-void storePixel(ivec2 texel, Pixel p) {
-  uLists[slot(texel, kStatus)] = p.status;
-  if ((p.status & kHit) == 0u) uLists[slot(texel, kPlace)] = p.events;
-  uLists[slot(texel, kEffort)] = p.pieces << 16 | uint(p.effort.iterations);
-  uLists[slot(texel, kSolved)] = p.mostInPiece << 16 | p.solved;
-}
-
-void storeHit(ivec2 texel, inout Pixel p, uint step, float offset) {
-  p.status |= kHit;
-  uLists[slot(texel, kPlace)] = step;
-  uLists[slot(texel, kOffset)] = floatBitsToUint(offset);
-}
-
-// A pixel counts once it is finished; one that is going to be repaired, then.
-void count(ivec2 texel, Pixel p) {
-  int at = sumsOf(texel);
-  if ((p.status & kSpilled) != 0u) {
-    if (uList.z == 0) atomicAdd(uSums[at].overflow, 1u);
-    if (uList.y != 0) return;
-  }
-  atomicAdd(uSums[at].pixels, 1u);
-  atomicAdd(uSums[at].events, p.events);
-  atomicAdd(uSums[at].pieces, p.pieces);
-  atomicAdd(uSums[at].iterations, uint(p.effort.iterations));
-  atomicMax(uSums[at].mostIterations, uint(p.effort.iterations));
-  atomicAdd(uSums[at].solved, p.solved);
-  atomicMax(uSums[at].mostInPiece, p.mostInPiece);
-  if ((p.status & kHit) != 0u) atomicAdd(uSums[at].hits, 1u);
-  if ((p.status & kGrazing) != 0u) atomicAdd(uSums[at].grazing, 1u);
-  if ((p.status & kUnfinished) != 0u) atomicAdd(uSums[at].unfinished, 1u);
+  return meetSum(sum, least, size, p.status, p.effort);
 }
 
 // The list after an event; false if it is too short.
@@ -155,24 +55,6 @@ bool updateList(ivec2 texel, uint key, inout uint status) {
   return true;
 }
 
-void spill(ivec2 texel) {
-  atomicAdd(uOverflow, 1u);
-  atomicMin(uBox[0], uint(texel.x));
-  atomicMin(uBox[1], uint(texel.y));
-  atomicMax(uBox[2], uint(texel.x));
-  atomicMax(uBox[3], uint(texel.y));
-  ivec2 at = texel + uRegion.xy;
-  uSpilled[at.y * uList.w + at.x] = 1u;
-}
-
-// Whether this pixel is among those to be done again.
-bool isToBeRepaired(ivec2 texel) {
-  ivec2 at = texel + uRegion.xy;
-  bool spilled = uSpilled[at.y * uList.w + at.x] != 0u;
-  uSpilled[at.y * uList.w + at.x] = 0u;
-  return spilled;
-}
-
 // The surface between two events.
 Found search(ivec2 texel, SceneRay ray, uint lastStep, uint lastKey, uint step, inout Pixel p) {
   uint ids = p.status & kCount;
@@ -189,15 +71,28 @@ Found search(ivec2 texel, SceneRay ray, uint lastStep, uint lastKey, uint step, 
   float size = float(step - lastStep) * uSteps.x;
   int before = p.effort.iterations;
   Found found = ids == 1u ? meetCore(fetchBall(uLists[slot(texel, kIds)]), ray, start, size, p.status)
-                          : meetSum(texel, ids, ray, start, size, p.status, p.effort);
-  int spent = p.effort.iterations - before;
-  p.pieces = min(p.pieces + 1u, 0xFFFFu);
-  if (spent > 0) p.solved = min(p.solved + 1u, 0xFFFFu);
-  p.mostInPiece = max(p.mostInPiece, uint(spent));
-  p.effort.iterations = min(p.effort.iterations, 0xFFFF);
-  if (p.effort.grazing) p.status |= kGrazing;
-  if (p.effort.unfinished) p.status |= kUnfinished;
+                          : meetList(texel, ids, ray, start, size, p);
+  notePiece(p, before);
   return found;
+}
+
+// From this step on bezier_walk.frag goes on without a list.
+void leaveList(ivec2 texel, uint step, inout Pixel p) {
+  p.status = p.status & ~kCount | kWalks;
+  uLists[slot(texel, kPlace)] = step;
+  uLists[slot(texel, kReach)] = 0u;
+  uLists[slot(texel, kFrom)] = 0u;
+  uCells[vCell.x].walks = 1u;
+}
+
+// The list is too short for what enters at a step.
+void spill(ivec2 texel, uint step, inout Pixel p) {
+  atomicAdd(uSums[sumsOf(texel)].overflow, 1u);
+  if (uList.y == 0) {
+    storeHit(texel, p, step, 0.0);  // as the paper does (§7): what enters is taken for the surface
+  } else {
+    leaveList(texel, step, p);
+  }
 }
 
 // Takes in the next event; true if that was the last.
@@ -214,17 +109,8 @@ bool advance(ivec2 texel, SceneRay ray, uint lastStep, uint lastKey, uint step, 
     if (step > hiddenFrom(ray, texelFetch(tDepth, texel + uRegion.xy, 0).r)) return true;
   }
   if (updateList(texel, key, p.status)) return false;
-  spill(texel);
-  p.status |= kSpilled;
-  // As the paper does (§7): what enters is taken for the surface.
-  if (uList.y == 0) storeHit(texel, p, step, 0.0);
+  spill(texel, step, p);
   return true;
-}
-
-// There is more to do for this pixel. Whoever writes, writes the same.
-void stay(ivec2 texel) {
-  uCells[vCell.x].unfinished = uint(uLayer.x);
-  uBlocks[(texel.y / 8) * ((uRegion.z + 7) / 8) + texel.x / 8] = uint(uLayer.x);
 }
 
 void main() {
@@ -234,17 +120,11 @@ void main() {
   uint lastKey = texelFetch(tLastKey, texel, 0).r;
   uint step = floatBitsToUint(texelFetch(tEvent, texel, 0).r);
   uint key = texelFetch(tEventKey, texel, 0).r;
-  bool fresh = lastKey == 0u;
 
   oLastStep = lastStep;
   oLastKey = lastKey;
-  if (fresh && uList.z != 0 && !isToBeRepaired(texel)) {
-    uLists[slot(texel, kStatus)] = 0u;
-    oLastStep = kFinished;
-    return;
-  }
-  if (step >= uint(vCell.y)) {  // a ball that was not drawn may come before
-    if (fresh && uList.z != 0) uSpilled[(texel.y + uRegion.y) * uList.w + texel.x + uRegion.x] = 1u;
+  bool last = uList.y != 0 && uLayer.x >= uList.y;
+  if (step >= uint(vCell.y) && !last) {  // a ball that was not drawn may come before
     stay(texel);
     uCells[vCell.x].waiting = uint(uLayer.x);
     if (uLayer.y != 0) atomicMin(uCells[vCell.x].least, lastStep);
@@ -252,18 +132,26 @@ void main() {
   }
   SceneRay ray = sceneRay(vec2(texel + uRegion.xy) + 0.5 + uView.tile.xy);
   Pixel p = freshPixel();
-  if (fresh) {
+  if (lastKey == 0u) {
     lastStep = firstStep(ray);
   } else {
     p = loadPixel(texel);
   }
-  bool finished = advance(texel, ray, lastStep, lastKey, step, key, p);
+  bool known = step < uint(vCell.y);
+  bool finished = known && advance(texel, ray, lastStep, lastKey, step, key, p);
+  if (last && !finished) {
+    leaveList(texel, known ? step : lastStep, p);
+    finished = true;
+  }
   storePixel(texel, p);
   if (finished) {
-    if (p.events > 0u) count(texel, p);
+    bool walks = (p.status & kWalks) != 0u;
+    if (p.events > 0u) atomicAdd(uSums[sumsOf(texel)].events, p.events);
+    if (p.events > 0u && !walks) count(texel, p);
     oLastStep = kFinished;
     return;
   }
+  uLists[slot(texel, kPlace)] = p.events;
   stay(texel);
   if (uLayer.y != 0) atomicMin(uCells[vCell.x].least, step);
   oLastStep = step;

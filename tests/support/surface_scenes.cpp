@@ -67,6 +67,15 @@ SurfaceScene coincidentBalls() {
   return SurfaceScene(field);
 }
 
+SurfaceScene nearlyCoincidentBalls(unsigned count, double apart, double sum) {
+  Random random(4);
+  MetaballField field;
+  for (unsigned i = 1; i <= count; ++i)
+    field.balls.push_back({glm::vec3(glm::dvec3(0.25, -0.5, 1) + random.inBox(apart)), 2.0f,
+                           static_cast<float>(sum / count), 0x808080, i});
+  return SurfaceScene(field);
+}
+
 SurfaceView ballsAlongOneRay() {
   MetaballField field;
   for (unsigned i = 0; i < 1000; ++i) {

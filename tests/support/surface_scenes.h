@@ -36,6 +36,9 @@ std::vector<std::filesystem::path> moleculeFiles();
 
 /// 200 in one place (Kanamori et al. 2008, Figure 9 a and b).
 SurfaceScene coincidentBalls();
+/// `count` of them, each up to `apart` Å away from the same place in each direction; their sum is `sum`
+/// there.
+SurfaceScene nearlyCoincidentBalls(unsigned count, double apart, double sum);
 
 /// A thousand along one ray; the surface lies behind hundreds that do not reach the level (Figure 9 c).
 SurfaceView ballsAlongOneRay();
