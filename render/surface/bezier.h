@@ -5,7 +5,7 @@
 // Layer by layer, the places at which each pixel's ray enters or leaves a ball are peeled off in order; the
 // pixel keeps the list of the balls that it is in, and looks for the surface in each interval between two
 // such places. Deviations (docs/methods.md): events are ordered by (place, ball), so that none is lost or
-// taken twice; a list that becomes too short is noticed, and its pixel done again with a longer one; the
+// taken twice; a pixel whose list becomes too short, or whose layers too many, goes on without one; the
 // polynomials of an interval are written down at once instead of being clipped from the whole chord; balls
 // are culled for each cell of the screen, by a flag in a buffer instead of a query for each.
 
