@@ -265,15 +265,14 @@ void Bezier::drawRegion(Frame& frame, const ScreenRect& rect) {
   glEnable(GL_SCISSOR_TEST);
   if (culling_) cull(frame, region);
   for (const PeelInstance& instance : region.instances) frame.left[instance.ball] = true;
+  PeelControl exhausted = 0;
   if (!region.cells.empty()) {
     peel(frame, region);
     walk(frame, region);
+    control_.read(&exhausted, sizeof exhausted);
     shade(frame, region);
   }
   glDisable(GL_SCISSOR_TEST);
-  if (region.walkFrom.empty()) return;
-  PeelControl exhausted = 0;
-  control_.read(&exhausted, sizeof exhausted);
   checkLoops("bezier", exhausted);
 }
 

@@ -11,6 +11,7 @@
 #include "include/bezier.glsl"
 #include "include/bezier_lists.glsl"
 #include "include/bezier_pixel.glsl"
+#include "include/loops.glsl"
 
 layout(binding = 0) uniform usampler2D tLastStep;
 layout(binding = 1) uniform usampler2D tLastKey;
@@ -144,6 +145,9 @@ void main() {
     finished = true;
   }
   storePixel(texel, p);
+#ifdef KERNEL_POWER
+  if (loopsAreEnded(uList.z)) atomicAdd(uExhausted, 1u);  // the kernel has loops for each ball of the list
+#endif
   if (finished) {
     bool walks = (p.status & kWalks) != 0u;
     if (p.events > 0u) atomicAdd(uSums[sumsOf(texel)].events, p.events);

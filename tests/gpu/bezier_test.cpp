@@ -141,10 +141,12 @@ TEST_F(Bezier, TwentyThousandBallsAreLeftBehind) {
 TEST_F(Bezier, MoreBallsThanLoopsAllowAreExactOrRefused) {
   test::SurfaceScene scene = test::nearlyCoincidentBalls(300, 0, 2);
   scene.primitives->surfaces[0].kernel = {KernelShape::power, 16};
-  try {
-    expectExact(judge(scene, viewOf(scene, {24, 18}), options()));
-  } catch (const InputError& error) {
-    EXPECT_EQ(std::string(error.what()).find("surface method bezier: more balls overlap in"), 0u);
+  for (const double list : {14, 300}) {
+    try {
+      expectExact(judge(scene, viewOf(scene, {24, 18}), options({{"list", list}})));
+    } catch (const InputError& error) {
+      EXPECT_EQ(std::string(error.what()).find("surface method bezier: more balls overlap in"), 0u);
+    }
   }
 }
 
