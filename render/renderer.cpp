@@ -15,6 +15,7 @@
 #include "core/valid_primitives.h"
 #include "render/gbuffer.h"
 #include "render/layers.h"
+#include "render/picture_parts.h"
 #include "render/post/depth_unsharp.h"
 #include "render/post/labels.h"
 #include "render/post/occlusion.h"
@@ -36,25 +37,6 @@ namespace meniscus {
 
 namespace {
 
-// A tile's G-buffer, sum and picture take about 40 bytes a pixel: at most 320 MiB.
-constexpr std::int64_t kTilePixels = std::int64_t{8} << 20;
-// Finished rows wait for the ones beside them: at most 128 MiB, unless one row alone is larger.
-constexpr std::int64_t kBandBytes = std::int64_t{128} << 20;
-
-// Side of the largest shadow map [texels]. As a picture from outside its scene needs about two texels a
-// pixel, it is no larger than this multiple of the picture either: a close-up's frustum, seen from the side,
-// is wide.
-constexpr int kShadowMapSize = 8192;
-constexpr double kShadowTexelsPerPixel = 8;
-constexpr int kLeastShadowMapSize = 2048;
-
-int largestShadowMap(ImageSize picture) {
-  const gl::Limits limits = gl::queryLimits();
-  const double side = std::sqrt(kShadowTexelsPerPixel * static_cast<double>(picture.width) * picture.height);
-  const int wanted = static_cast<int>(std::clamp<double>(side, kLeastShadowMapSize, kShadowMapSize));
-  return std::min({wanted, limits.textureSize, limits.viewportWidth, limits.viewportHeight});
-}
-
 gl::TextureFormat textureFormat(PixelFormat format) {
   switch (format) {
     case PixelFormat::rgba8:
@@ -65,35 +47,6 @@ gl::TextureFormat textureFormat(PixelFormat format) {
       return gl::TextureFormat::rgba32f;
   }
   return gl::TextureFormat::rgba8;
-}
-
-struct TileSize {
-  int width, height;
-};
-
-// Without the margin that is drawn around it.
-TileSize chooseTileSize(ImageSize picture, int bytesPerRowPixel, int maxTileSize, int margin = 0) {
-  const gl::Limits limits = gl::queryLimits();
-  int side = std::min({limits.textureSize, limits.viewportWidth, limits.viewportHeight}) - 2 * margin;
-  if (maxTileSize > 0) side = std::min(side, maxTileSize);
-  // With a wide margin larger and squarer, or most of what is drawn would be margin.
-  const std::int64_t pixels = std::max(kTilePixels, std::int64_t{16} * margin * margin);
-  int width = std::min(picture.width, side);
-  if (margin > 0 && std::int64_t{4} * margin * (width + 2 * margin) > pixels) {
-    width = std::min(width, static_cast<int>(std::sqrt(static_cast<double>(pixels))) - 2 * margin);
-  }
-  const std::int64_t rows =
-      std::min(pixels / (width + 2 * margin) - 2 * margin,
-               kBandBytes / (static_cast<std::int64_t>(picture.width) * bytesPerRowPixel));
-  return {width, static_cast<int>(std::clamp<std::int64_t>(rows, 1, std::min(picture.height, side)))};
-}
-
-// Grown by what its pixels' effects look at, as far as the picture goes.
-Tile withMargin(const Tile& tile, int margin, ImageSize picture) {
-  const int left = std::min(margin, tile.x), below = std::min(margin, tile.y);
-  const int right = std::min(margin, picture.width - tile.x - tile.width);
-  const int above = std::min(margin, picture.height - tile.y - tile.height);
-  return {tile.x - left, tile.y - below, left + tile.width + right, below + tile.height + above};
 }
 
 class Stopwatch {

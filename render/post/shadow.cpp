@@ -20,6 +20,13 @@ namespace {
 constexpr double kPi = 3.141592653589793;
 constexpr double kGoldenAngle = 2.399963229728653;
 
+// Side of the largest shadow map [texels]. As a picture from outside its scene needs about two texels a
+// pixel, it is no larger than this multiple of the picture either: a close-up's frustum, seen from the side,
+// is wide.
+constexpr int kShadowMapSize = 8192;
+constexpr double kShadowTexelsPerPixel = 8;
+constexpr int kLeastShadowMapSize = 2048;
+
 // Where the probes lie; measured: docs/measured/shadow_error.md.
 constexpr int kProbesPerInnerOne = 3;
 constexpr double kInnerRing = 0.45, kOuterRing = 0.92;
@@ -54,6 +61,13 @@ void probesFirst(std::vector<glm::dvec2>& points, int probes, double turn) {
 }
 
 }  // namespace
+
+int largestShadowMap(ImageSize picture) {
+  const gl::Limits limits = gl::queryLimits();
+  const double side = std::sqrt(kShadowTexelsPerPixel * static_cast<double>(picture.width) * picture.height);
+  const int wanted = static_cast<int>(std::clamp<double>(side, kLeastShadowMapSize, kShadowMapSize));
+  return std::min({wanted, limits.textureSize, limits.viewportWidth, limits.viewportHeight});
+}
 
 void ShadowUniforms::set(const ShadowSettings& settings, const View& camera, const ShadowMap& map, int sample,
                          int sampleCount) {

@@ -24,6 +24,9 @@ struct ShadowMap {
   bool drawn() const { return depth != nullptr || heights != nullptr; }
 };
 
+/// Side of the largest map that suits a picture [texels]. A context must be current.
+int largestShadowMap(ImageSize picture);
+
 /// A buffer for the pass's uniforms, which outlives the frames.
 class ShadowUniforms {
  public:
