@@ -31,6 +31,7 @@ struct ProgramName {
 constexpr std::pair<std::string_view, std::string_view> kShared[] = {
     {"quadrics/tiles.frag", "surface/near_plane.vert"},
     {"surface/bezier_surface.frag", "surface/near_plane.vert"},
+    {"surface/bezier_walk.frag", "surface/bezier_step.vert"},
     {"surface/bvh_surface.frag", "surface/near_plane.vert"},
     {"surface/lists_surface.frag", "surface/near_plane.vert"},
     {"surface/newton_finish.frag", "surface/near_plane.vert"},
