@@ -14,6 +14,7 @@
 #include "core/sampling.h"
 #include "core/valid_primitives.h"
 #include "render/gbuffer.h"
+#include "render/gl/context.h"
 #include "render/layers.h"
 #include "render/picture_parts.h"
 #include "render/post/depth_unsharp.h"
@@ -655,6 +656,7 @@ void Renderer::renderPicture(const View& view, const Lighting& lighting, const B
         texture->read(tile.width, tile.height,
                       static_cast<int>(picture.rows.rowBytes / bytesPerPixel(layout.format)),
                       picture.rows.first, cropX, cropY);
+      requireContextAlive();
       if (layout.layers.data()) storeLayers(layout, view, tile, texels, colors, band.data());
       ++r.stats.tiles;
     }
@@ -702,6 +704,7 @@ HitImage Renderer::renderHits(const View& view, HitChannels channels, const Surf
       ++r.stats.tiles;
     }
   }
+  requireContextAlive();
   for (std::size_t i = 0; i < encoded.size(); i += 2) {
     const bool miss =
         encoded[i] == 0 && encoded[i + 1] == 0;  // cleared; no normal towards the viewer is stored so

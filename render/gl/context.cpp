@@ -53,6 +53,14 @@ std::string loadFunctions(ProcAddress getProcAddress) {
 
 }  // namespace gl
 
+void requireContextAlive() {
+  // OSMesa may lack the function: there is no driver to be reset.
+  if (glGetGraphicsResetStatus == nullptr || glGetGraphicsResetStatus() == GL_NO_ERROR) return;
+  throw GraphicsError(
+      "the graphics driver was reset while it drew; run it again, and if that happens again, with "
+      "--backend osmesa or a smaller --size");
+}
+
 namespace {
 
 // What `backend` stands for, in order of preference.

@@ -39,6 +39,10 @@ class Context {
   std::string name_, renderer_, version_;
 };
 
+/// Throws GraphicsError if the current context was lost: the driver was reset, and what has been drawn is
+/// void.
+void requireContextAlive();
+
 /// Tries every way without a window, one after the other, leaving no context current.
 std::vector<BackendReport> diagnoseBackends();
 

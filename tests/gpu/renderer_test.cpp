@@ -2,6 +2,7 @@
 
 #include "render/renderer.h"
 
+#include <glad/gl.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <cstring>
 #include <string>
 
+#include "core/error.h"
 #include "tests/support/gl_fixture.h"
 #include "tests/support/scenes.h"
 
@@ -135,6 +137,38 @@ TEST_F(RendererTest, WhereTheProcessorCastsAndShadesNothingGoesThroughTextures) 
   const Names textures = names(renderer.stats().textures);
   EXPECT_TRUE(std::binary_search(textures.begin(), textures.end(), "normal"));
   EXPECT_FALSE(std::binary_search(textures.begin(), textures.end(), "albedo"));
+}
+
+// As a driver says after a reset.
+GLenum GLAD_API_PTR lost() {
+  return GL_INNOCENT_CONTEXT_RESET;
+}
+
+TEST_F(RendererTest, ALostContextIsAnErrorThatWritesNothing) {
+  const auto scene = test::randomSpheres(20, 1);
+  const View view = test::viewOf(*scene, kSize);
+  Renderer renderer;
+  renderer.setPrimitives(scene);
+  const auto before = draw(renderer, view, 1);
+  const auto real = glad_glGetGraphicsResetStatus;
+  glad_glGetGraphicsResetStatus = lost;
+  test::MemorySink sink;
+  const auto message = [](const auto& call) -> std::string {
+    try {
+      call();
+    } catch (const GraphicsError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string picture = message(
+      [&] { renderer.renderPicture(view, Lighting{}, {}, test::withSamples(1), PixelFormat::rgba8, sink); });
+  const std::string hits = message([&] { renderer.renderHits(view, {}); });
+  glad_glGetGraphicsResetStatus = real;
+  EXPECT_NE(picture.find("the graphics driver was reset"), std::string::npos) << picture;
+  EXPECT_EQ(hits, picture);
+  EXPECT_TRUE(sink.bytes.empty());
+  EXPECT_EQ(draw(renderer, view, 1), before);
 }
 
 TEST_F(RendererTest, EmptySceneDrawsTheBackgroundWithoutAQuadricPass) {
