@@ -121,11 +121,11 @@ class Penumbra {
     storeShares(sum * all(1 / static_cast<float>(task_.samples)), n, shares);
     for (std::size_t k = 0; k < n; ++k) out_[where_[k]] = shares[k];
     count_ -= n;
-    for (std::size_t k = 0; k < count_; ++k) {
-      for (auto& column : numbers_) column[k] = column[n + k];
-      probed_[k] = probed_[n + k];
-      where_[k] = where_[n + k];
-    }
+    if (count_ == 0) return;
+    // Fewer than a vector are left.
+    for (auto& column : numbers_) hn::Store(hn::LoadU(f, column + n), f, column);
+    hn::Store(hn::LoadU(f, probed_ + n), f, probed_);
+    hn::Store(hn::LoadU(I(), where_ + n), I(), where_);
   }
 
   const ShadowTask& task_;
