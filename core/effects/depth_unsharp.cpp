@@ -6,24 +6,11 @@
 #include <cmath>
 #include <glm/common.hpp>
 
+#include "core/effects/nearness.h"
+
 namespace meniscus::effects {
 
 namespace {
-
-// 0 on the far plane, 1 on the near plane (shaders/include/scene_depth.glsl).
-struct Nearness {
-  explicit Nearness(const f32::ViewBlock& view) {
-    const float range = view.depth.z - view.depth.w;
-    perspective = view.scale.z > 0.5f;
-    factor = perspective ? (view.depth.x - view.depth.w) / range : 1 / (view.depthMap.x * range);
-    added = view.depthMap.x;
-  }
-  float operator()(float depth) const {
-    return perspective ? depth * factor / (depth + added) : depth * factor;
-  }
-  bool perspective;
-  float factor, added;
-};
 
 /// The blocks of a target, and what they hold: sums of nearness (x) and numbers (y) of surface pixels.
 struct Blocks {

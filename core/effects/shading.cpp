@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "core/effects/nearness.h"
 #include "core/error.h"
-#include "core/srgb.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/effects/shading.cpp"
@@ -23,7 +23,7 @@ struct ShadeTask {
   const SurfacePlanes* planes;
   const ShadeBlock* block;
   const LightPlanes* light;
-  const float* linear;  // light of each stored value
+  Nearness nearness;
 };
 struct EncodeTask {
   float perSample;
@@ -35,7 +35,7 @@ struct LightRow {
   float *red, *green, *blue, *alpha;
 };
 struct LitRow {
-  const float *red = nullptr, *green = nullptr, *blue = nullptr, *alpha = nullptr;
+  const float *red, *green, *blue, *alpha;
 };
 }  // namespace meniscus::effects
 #endif
@@ -49,14 +49,8 @@ struct Light {
   V alpha;
 };
 
-HWY_INLINE Vec3 normalized(const Vec3& v) {
-  return scale(v, all(1.0f) / hn::Sqrt(dot(v, v)));
-}
 HWY_INLINE Vec3 xyz(const glm::vec4& v) {
   return {all(v.x), all(v.y), all(v.z)};
-}
-HWY_INLINE V mixed(V a, V b, V share) {
-  return a * (all(1.0f) - share) + b * share;
 }
 // Rows have no room beyond their last pixel, and another processor writes the next.
 HWY_INLINE V loadSome(const float* from, std::size_t count) {
@@ -101,19 +95,13 @@ HWY_INLINE Vec3 lit(const ShadeBlock& b, const Vec3& albedo, const Vec3& normal,
   return add(diffuse, {highlight, highlight, highlight});
 }
 
-// nearness() of include/scene_depth.glsl.
-HWY_INLINE V nearness(const f32::ViewBlock& view, V value) {
-  const float range = view.depth.z - view.depth.w;
-  if (!(view.scale.z > 0.5f)) return value * all(1 / (view.depthMap.x * range));
-  return value * all((view.depth.x - view.depth.w) / range) / (value + all(view.depthMap.x));
-}
-
 HWY_INLINE Vec3 linearAlbedo(const ShadeTask& task, std::size_t at) {
   const F f;
   const U u;
   const auto stored = hn::LoadU(u, task.planes->albedo.data() + at);
   const auto channel = [&](auto bits) {
-    return hn::GatherIndex(f, task.linear, hn::BitCast(I(), hn::And(bits, hn::Set(u, 0xFFu))));
+    const auto value = hn::BitCast(I(), hn::And(bits, hn::Set(u, 0xFFu)));
+    return hn::GatherIndex(f, &task.block->linear[0].x, hn::ShiftLeft<2>(value));
   };
   return {channel(stored), channel(hn::ShiftRight<8>(stored)), channel(hn::ShiftRight<16>(stored))};
 }
@@ -137,8 +125,8 @@ HWY_INLINE Light surfaceLight(const ShadeTask& task, std::size_t at, int x, int 
     std::uint16_t halves[2 * kMostLanes] = {};
     std::memcpy(halves, light.occlusion.data() + at, 4 * count);
     const V hidden = loadShares(halves, count, 2, kUnorm16),
-            all_ = loadShares(halves + 1, count, 2, kUnorm16);
-    sky = one - all(b.ambient.w) * hn::Min(hidden / hn::Max(all_, all(1e-5f)), one);
+            whole = loadShares(halves + 1, count, 2, kUnorm16);
+    sky = one - all(b.ambient.w) * hn::Min(hidden / hn::Max(whole, all(1e-5f)), one);
   }
   Light l{lit(b, linearAlbedo(task, at), normalsAt(planes, at), toEye, visible, sky), one};
   if (!light.traced.empty()) {
@@ -157,7 +145,9 @@ HWY_INLINE Light surfaceLight(const ShadeTask& task, std::size_t at, int x, int 
     l.color = {shifted(l.color.x), shifted(l.color.y), shifted(l.color.z)};
   }
   if (b.fog.x > 0) {
-    const V away = one - nearness(planes.view, depth);
+    const Nearness& n = task.nearness;
+    const V near = n.perspective ? depth * all(n.factor) / (depth + all(n.added)) : depth * all(n.factor);
+    const V away = one - near;
     const V fog = all(b.fog.x) * hn::Min(hn::Max((away - all(b.fog.y)) * all(b.fog.z), zero), one);
     const V through = one - fog;
     l = {scale(l.color, through), l.alpha * through};
@@ -281,15 +271,6 @@ namespace {
 
 constexpr int kRows = 8;  // for a task
 
-const float* linearTable() {
-  static const std::array<float, 256> table = [] {
-    std::array<float, 256> values{};
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(linearOfBytes()[i]);
-    return values;
-  }();
-  return table.data();
-}
-
 template <typename F>
 void forRows(int height, F f) {
   tbb::parallel_for(tbb::blocked_range<int>(0, height, kRows), [&](const tbb::blocked_range<int>& rows) {
@@ -314,13 +295,11 @@ class RowWriter {
     HWY_DYNAMIC_DISPATCH(encodeRow)
     (task_, LitRow{zeros, zeros, zeros, zeros}, nothing.size(), empty_.data());
   }
-  // y: of the target. light: from litX on; without red: a row of backdrop.
+  // y: of the target.
+  void writeBackdrop(int y) const { std::memcpy(rowOf(y), empty_.data(), empty_.size()); }
+  // light: from litX on.
   void write(int y, const LitRow& light) const {
-    std::byte* const row = out_.first + out_.rowBytes * static_cast<std::size_t>(y - out_.y);
-    if (light.red == nullptr) {
-      std::memcpy(row, empty_.data(), empty_.size());
-      return;
-    }
+    std::byte* const row = rowOf(y);
     const auto bytes = [&](int pixels) { return pixelBytes_ * static_cast<std::size_t>(pixels); };
     std::memcpy(row, empty_.data(), bytes(first_ - out_.x));
     const int skipped = first_ - litX_;
@@ -331,6 +310,8 @@ class RowWriter {
   }
 
  private:
+  std::byte* rowOf(int y) const { return out_.first + out_.rowBytes * static_cast<std::size_t>(y - out_.y); }
+
   const PictureRows& out_;
   EncodeTask task_;
   std::size_t pixelBytes_;
@@ -352,7 +333,7 @@ void addLight(const SurfacePlanes& planes, const ShadeBlock& block, const LightP
   }
   MENISCUS_CHECK(sum.x == planes.x && sum.y == planes.y && sum.width == planes.width &&
                  sum.height == planes.height);
-  const ShadeTask task{&planes, &block, &light, linearTable()};
+  const ShadeTask task{&planes, &block, &light, Nearness(planes.view)};
   forRows(planes.height, [&](int y) {
     const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(sum.width);
     HWY_DYNAMIC_DISPATCH(shadeRow)
@@ -366,7 +347,7 @@ void writePicture(const LightSum& sum, int samples, const glm::vec4& backdrop, c
   forRows(out.height, [&](int row) {
     const int y = out.y + row;
     if (y < sum.y || y >= sum.y + sum.height) {
-      writer.write(y, {});
+      writer.writeBackdrop(y);
       return;
     }
     const std::size_t at = static_cast<std::size_t>(y - sum.y) * static_cast<std::size_t>(sum.width);
@@ -377,12 +358,12 @@ void writePicture(const LightSum& sum, int samples, const glm::vec4& backdrop, c
 
 void shadePicture(const SurfacePlanes& planes, const ShadeBlock& block, const LightPlanes& light,
                   const PictureRows& out) {
-  const ShadeTask task{&planes, &block, &light, linearTable()};
+  const ShadeTask task{&planes, &block, &light, Nearness(planes.view)};
   const RowWriter writer(out, 1, block.backdrop, planes.x, planes.width);
   forRows(out.height, [&](int row) {
     const int y = out.y + row - planes.y;
     if (y < 0 || y >= planes.height) {
-      writer.write(out.y + row, {});
+      writer.writeBackdrop(out.y + row);
       return;
     }
     thread_local std::vector<float> light4;

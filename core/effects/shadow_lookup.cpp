@@ -82,13 +82,18 @@ HWY_INLINE V litSamples(const ShadowTask& task, const Receivers& r, int first, i
   return sum;
 }
 
+// The share of all samples that is lit, of which `probed` are of the probes.
+HWY_INLINE V shareOfAll(const ShadowTask& task, const Receivers& r, V probed) {
+  return (probed + litSamples(task, r, task.probes, task.samples)) *
+         all(1 / static_cast<float>(task.samples));
+}
+
 // The four texels around a place, weighted by nearness.
 V litAround(const ShadowTask& task, const Receivers& r) {
   const V half = all(0.5f), one = all(1.0f);
   const V x = hn::Floor(r.x - half), y = hn::Floor(r.y - half);
   const V fx = r.x - half - x, fy = r.y - half - y;
   const auto lit = [&](V tx, V ty) { return hn::IfThenZeroElse(shadowedAt(task, r, tx, ty), one); };
-  const auto mixed = [](V a, V b, V share) { return a * (all(1.0f) - share) + b * share; };
   return mixed(mixed(lit(x, y), lit(x + one, y), fx), mixed(lit(x, y + one), lit(x + one, y + one), fx), fy);
 }
 
@@ -116,9 +121,8 @@ class Penumbra {
     const F f;
     const auto number = [&](std::size_t i) { return hn::Load(f, numbers_[i]); };
     const Receivers r{number(0), number(1), number(2), number(3), number(4), number(5), number(6), number(7)};
-    const V sum = hn::Load(f, probed_) + litSamples(task_, r, task_.probes, task_.samples);
     std::uint16_t shares[kMostLanes];
-    storeShares(sum * all(1 / static_cast<float>(task_.samples)), n, shares);
+    storeShares(shareOfAll(task_, r, hn::Load(f, probed_)), n, shares);
     for (std::size_t k = 0; k < n; ++k) out_[where_[k]] = shares[k];
     count_ -= n;
     if (count_ == 0) return;
@@ -160,13 +164,14 @@ void lookUpRows(const ShadowTask& task, int firstRow, int lastRow, std::uint16_t
         continue;
       }
       const V lit = litSamples(task, r, 0, task.probes), most = all(static_cast<float>(task.probes));
-      storeShares(hn::IfThenElseZero(hn::And(wanted, lit > zero), all(1.0f)), here, out + at);
       const M agree = hn::Or(lit == zero, lit == most);
       const M disagree = task.probes > 0 ? hn::AndNot(agree, wanted) : wanted;
       if (hn::AllTrue(f, disagree)) {  // a whole vector already
-        const V sum = lit + litSamples(task, r, task.probes, task.samples);
-        storeShares(sum * all(1 / static_cast<float>(task.samples)), here, out + at);
-      } else if (!hn::AllFalse(f, disagree))
+        storeShares(shareOfAll(task, r, lit), here, out + at);
+        continue;
+      }
+      storeShares(hn::IfThenElseZero(hn::And(wanted, lit > zero), all(1.0f)), here, out + at);
+      if (!hn::AllFalse(f, disagree))
         penumbra.add(disagree, r, lit, hn::Iota(I(), static_cast<std::int32_t>(at)));
     }
   }

@@ -49,7 +49,7 @@ HWY_INLINE Vec3 normalsAt(const SurfacePlanes& planes, std::size_t at) {
   const V fold = hn::Max(hn::Neg(nz), zero);
   const Vec3 n{nx - hn::IfThenElse(nx >= zero, fold, hn::Neg(fold)),
                ny - hn::IfThenElse(ny >= zero, fold, hn::Neg(fold)), nz};
-  return scale(n, one / hn::Sqrt(dot(n, n)));
+  return normalized(n);
 }
 
 // Of the pixels (x, y), (x + 1, y), ... from `at` on.

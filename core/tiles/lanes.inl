@@ -47,6 +47,12 @@ HWY_INLINE Vec3 add(const Vec3& a, const Vec3& b) {
 HWY_INLINE Vec3 scale(const Vec3& a, V s) {
   return {a.x * s, a.y * s, a.z * s};
 }
+HWY_INLINE Vec3 normalized(const Vec3& a) {
+  return scale(a, all(1.0f) / hn::Sqrt(dot(a, a)));
+}
+HWY_INLINE V mixed(V a, V b, V share) {
+  return a * (all(1.0f) - share) + b * share;
+}
 HWY_INLINE Vec3 splat(const float (&v)[3]) {
   return {all(v[0]), all(v[1]), all(v[2])};
 }

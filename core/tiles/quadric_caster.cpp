@@ -113,7 +113,7 @@ HWY_INLINE Chord ellipsoidChord(const Ray& ray, const QuadricRecord& q) {
   unit.point = {dot(ray.point, u) / radii.x, dot(ray.point, v) / radii.y, dot(ray.point, w) / radii.z};
   const Vec3 along{dot(ray.direction, u) * shares.x, dot(ray.direction, v) * shares.y,
                    dot(ray.direction, w) * shares.z};
-  unit.direction = scale(along, all(1.0f) / hn::Sqrt(dot(along, along)));
+  unit.direction = normalized(along);
   const Chord s = sphereChord(unit, all(1.0f));
   const auto back = [&](const Vec3& p, const Vec3& factors) {
     return add(add(scale(u, p.x * factors.x), scale(v, p.y * factors.y)), scale(w, p.z * factors.z));
