@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <iterator>
 #include <string_view>
 
 #include "render/gl/context_backends.h"
@@ -107,21 +106,19 @@ class EglContext : public Context {
         return "it has no configuration for OpenGL";
       }
     }
-    const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
-                                 4,
-                                 EGL_CONTEXT_MINOR_VERSION,
-                                 5,
-                                 EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                 EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                 EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
-                                 EGL_LOSE_CONTEXT_ON_RESET,
-                                 EGL_NONE};
+    EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                           4,
+                           EGL_CONTEXT_MINOR_VERSION,
+                           5,
+                           EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                           EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                           EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
+                           EGL_LOSE_CONTEXT_ON_RESET,
+                           EGL_NONE};
     context_ = egl().createContext(display_, config, EGL_NO_CONTEXT, attributes);
-    if (context_ == EGL_NO_CONTEXT) {  // a driver that does not tell of resets
-      EGLint fewer[std::size(attributes) - 2];
-      std::copy_n(attributes, std::size(fewer) - 1, fewer);
-      fewer[std::size(fewer) - 1] = EGL_NONE;
-      context_ = egl().createContext(display_, config, EGL_NO_CONTEXT, fewer);
+    if (context_ == EGL_NO_CONTEXT) {
+      attributes[6] = EGL_NONE;  // a driver that does not tell of resets
+      context_ = egl().createContext(display_, config, EGL_NO_CONTEXT, attributes);
     }
     if (context_ == EGL_NO_CONTEXT) return "it makes no OpenGL 4.5 core context (" + egl().lastError() + ")";
     if (!surfaceless) {
