@@ -109,9 +109,9 @@ class RenderRun {
 
 int RenderRun::run() {
   checkBeforeReading();
-  if (options_.resume) {  // of a run that was killed
-    const std::filesystem::path folder = std::filesystem::path(options_.output).parent_path();
-    removeAbandonedFiles(folder.empty() ? "." : folder);
+  if (options_.resume) {
+    for (const std::string& name : {options_.output, options_.exportMesh})
+      if (!name.empty()) removeAbandonedFiles(name);
   }
   if (!options_.manifest.empty()) manifest_ = std::make_unique<Manifest>(options_.manifest, options_.resume);
   if (!options_.saveScene.empty()) sceneWriter_ = std::make_unique<SceneWriter>(options_.saveScene);

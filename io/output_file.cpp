@@ -194,9 +194,9 @@ void writeTextFile(const fs::path& path, std::string_view text) {
   file.commit();
 }
 
-void removeAbandonedFiles(const fs::path& folder) {
+void removeAbandonedFiles(const fs::path& path) {
   std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(folderOf(path), error)) {
     long process = 0;
     unsigned number = 0;
     const std::string name = entry.path().filename().string();

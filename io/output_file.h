@@ -51,9 +51,9 @@ class OutputFile {
 /// Writes a small text file (JSON, ...) in one go by the same rule.
 void writeTextFile(const std::filesystem::path& path, std::string_view text);
 
-/// Removes from a folder what unfinished OutputFiles of processes have left there that were killed; not what
-/// one that runs, here or on another machine, is writing. What cannot be removed stays.
-void removeAbandonedFiles(const std::filesystem::path& folder);
+/// Removes what unfinished OutputFiles of processes that were killed have left beside `path`; not what one
+/// that runs, here or on another machine, is writing. What cannot be removed stays.
+void removeAbandonedFiles(const std::filesystem::path& path);
 
 /// Removes what unfinished OutputFiles of this process have written so far. Async-signal-safe: for the
 /// handler of a signal that ends the process.
