@@ -203,9 +203,7 @@ TEST_F(Effects, OnlyWhatIsAskedForRuns) {
   const auto scene = groupedChain(20, 1);
   const View view = test::viewOf(*scene, kSize);
   const auto counts = [&](const RenderSettings& settings, bool processor = false) {
-    RendererOptions options;
-    options.effectsOnProcessor = processor;
-    Renderer renderer(options);
+    Renderer renderer(test::effectsBy(processor));
     renderer.setPrimitives(scene);
     draw(renderer, view, settings, kWhite);
     const RenderStats stats = renderer.stats();

@@ -186,9 +186,7 @@ TEST_F(Occlusion, IsTheSameInTilesAndAgain) {
 
 TEST_F(Occlusion, IsAPassATextureAndAProgramOnlyWhereItIsOn) {
   const auto scene = test::randomSpheres(20, 3);
-  RendererOptions options;
-  options.effectsOnProcessor = false;
-  Renderer renderer(options);
+  Renderer renderer(test::effectsBy(false));
   renderer.setPrimitives(scene);
   const View view = test::viewOf(*scene, {1, 1});
   draw(renderer, view, test::withSamples(1, QuadricMethod::splat));

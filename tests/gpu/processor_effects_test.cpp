@@ -23,10 +23,7 @@ class ProcessorEffects : public test::GlTest {
   }
   static std::vector<std::byte> picture(const Primitives& scene, const View& view,
                                         const RenderSettings& settings, bool processor, int maxTileSize = 0) {
-    RendererOptions options;
-    options.effectsOnProcessor = processor;
-    options.maxTileSize = maxTileSize;
-    Renderer renderer(options);
+    Renderer renderer(test::effectsBy(processor, maxTileSize));
     renderer.setPrimitives(std::make_shared<Primitives>(scene));
     test::MemorySink sink;
     renderer.renderPicture(view, Lighting{}, {}, settings, PixelFormat::rgba8, sink);
@@ -156,10 +153,7 @@ class ProcessorShading : public ProcessorEffects {
   };
   static std::vector<std::byte> picture(const Primitives& scene, const View& view, const Look& look,
                                         const Form& form, bool processor, int maxTileSize = 0) {
-    RendererOptions options;
-    options.effectsOnProcessor = processor;
-    options.maxTileSize = maxTileSize;
-    Renderer renderer(options);
+    Renderer renderer(test::effectsBy(processor, maxTileSize));
     renderer.setPrimitives(std::make_shared<Primitives>(scene));
     if (look.labels) {
       LabelSprite sprite;

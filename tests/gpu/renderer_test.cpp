@@ -60,16 +60,9 @@ bool omitted(const RenderStats& stats, const std::string& what) {
 
 using Names = std::vector<std::string>;
 
-// Nothing is computed beside OpenGL.
-RendererOptions byShaders() {
-  RendererOptions options;
-  options.effectsOnProcessor = false;
-  return options;
-}
-
 TEST_F(RendererTest, SpheresOnlyLeavesOutEverythingElse) {
   const auto scene = test::randomSpheres(50, 1);
-  Renderer renderer(byShaders());
+  Renderer renderer(test::effectsBy(false));
   renderer.setPrimitives(scene);
   draw(renderer, test::viewOf(*scene, kSize), 1, {}, PixelFormat::rgba8, QuadricMethod::splat);
   const RenderStats stats = renderer.stats();
@@ -103,7 +96,7 @@ TEST_F(RendererTest, DistanceOnlyNeedsNoColourAndNoShading) {
 
 TEST_F(RendererTest, FullPictureUsesEachProgramOnce) {
   const auto scene = test::randomChain(20, 1);
-  Renderer renderer(byShaders());
+  Renderer renderer(test::effectsBy(false));
   renderer.setPrimitives(scene);
   const View view = test::viewOf(*scene, kSize);
   for (int i = 0; i < 2; ++i) draw(renderer, view, 4, {}, PixelFormat::rgba8, QuadricMethod::splat);
@@ -118,9 +111,7 @@ TEST_F(RendererTest, FullPictureUsesEachProgramOnce) {
 
 TEST_F(RendererTest, WhereTheProcessorCastsAndShadesNothingGoesThroughTextures) {
   const auto scene = test::randomChain(20, 1);
-  RendererOptions options;
-  options.effectsOnProcessor = true;
-  Renderer renderer(options);
+  Renderer renderer(test::effectsBy(true));
   renderer.setPrimitives(scene);
   draw(renderer, test::viewOf(*scene, kSize), 4, {}, PixelFormat::rgba8, QuadricMethod::tiles);
   RenderStats stats = renderer.stats();

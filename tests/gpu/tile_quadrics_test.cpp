@@ -81,9 +81,7 @@ TEST_P(TileQuadrics, ShowTheSameFromInside) {
 
 TEST_F(TileQuadricsTest, NeedNoBufferAndNoProgram) {
   const auto scene = test::randomChain(30, 1);
-  RendererOptions options;
-  options.effectsOnProcessor = false;
-  Renderer renderer(options);
+  Renderer renderer(test::effectsBy(false));
   renderer.setPrimitives(scene);
   RenderSettings settings = test::withSamples(3, QuadricMethod::tiles);
   settings.shadows.mode = ShadowMode::hard;

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "render/gl/context.h"
 #include "render/gl/debug.h"
+#include "render/renderer.h"
 
 namespace meniscus::test {
 
@@ -31,5 +32,13 @@ class GlTest : public testing::Test {
  private:
   std::unique_ptr<Context> context_;
 };
+
+/// Whether the processor computes what it can of a picture beside casting, or shaders do, on any machine.
+inline RendererOptions effectsBy(bool processor, int maxTileSize = 0) {
+  RendererOptions options;
+  options.effectsOnProcessor = processor;
+  options.maxTileSize = maxTileSize;
+  return options;
+}
 
 }  // namespace meniscus::test
