@@ -396,11 +396,12 @@ void Renderer::Impl::drawShadowMap(Frame& frame) {
   const gl::TextureDesc desc{gl::TextureFormat::depth32f, whole.width, whole.height};
   const bool inMemory = effects.processor && !frame.translucent && castsAll(frame.settings.surface);
   TextureLease texture(nullptr, ReturnToPool{});
-  surfaceReader.begin(setView(light, whole, {0, 0}), whole.width, whole.height, true);
+  const f32::ViewBlock block = setView(light, whole, {0, 0});
   FrameGraph graph(pool);
   GBufferRefs gbuffer;
   if (inMemory) {
     graph.leaveOut("channel shadow map", "the processor casts it and looks it up");
+    surfaceReader.begin(block, whole.width, whole.height, true);
     surfaceReader.keepCast({.albedo = false, .normal = false, .id = false}, tiles::Extent::whole);
     gbuffer.depth = graph.create("shadow map", desc);
     gbuffer.planes = graph.createInMemory("shadow heights");

@@ -1,5 +1,6 @@
 #pragma once
-// A frame's G-buffer read back for the effects that the processor computes (core/effects/).
+// A frame's G-buffer in main memory, kept there or read back, for what the processor computes of it
+// (core/effects/), and what that gives.
 
 #include <optional>
 #include <span>
@@ -29,7 +30,6 @@ class SurfaceReader {
   /// Takes planes, of which those before have what is nearer, and gives others for them. Returns what is
   /// kept.
   const tiles::Planes& keep(tiles::Planes& planes, const tiles::PixelArea& target);
-  bool shades() const { return shades_; }
   /// Reads what has not been read of this frame.
   const effects::SurfacePlanes& read(const PassContext& context, const GBufferRefs& gbuffer,
                                      const SurfaceChannels& wanted = {});

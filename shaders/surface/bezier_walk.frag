@@ -121,7 +121,8 @@ Look look(int what, uint at, uint to, SceneRay ray, inout uint from, inout uint 
 // Whether there is certainly no surface where the field is within the bounds.
 bool isSettled(Bounds bounds, inout uint status) {
   float error = bounds.size * (1e-5 + 1e-6 * bounds.terms) + 1e-5 * abs(uField.x);
-  bool below = bounds.high + error<uField.x, above = bounds.low - error> uField.x;
+  bool below = bounds.high + error < uField.x;
+  bool above = bounds.low - error > uField.x;
   if ((status & (kInside | kOutside)) == 0u) status |= above ? kInside : below ? kOutside : 0u;
   return (status & kInside) != 0u ? above : below;
 }
