@@ -30,7 +30,10 @@ Tiles castBlock(const MetaballSource& source, const MetaballField& field, const 
   const TileBlock& block = lists.block(b);
   thread_local std::vector<BallRecord> records;
   records.resize(block.members.size());
-  for (std::size_t i = 0; i < records.size(); ++i) source.record(block.members[i], records[i]);
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    if (i + kPrefetched < records.size()) source.prefetch(block.members[i + kPrefetched]);
+    source.record(block.members[i], records[i]);
+  }
   TileRays rays = makeRays(target, LaneOrder::squares);
   TilePixels pixels;
   FieldTile tile{&field, source.largestSupport(), records, {}, lists.slack(), cut};

@@ -1,6 +1,8 @@
 #pragma once
 // A metaball field as the tile lists and the field caster take it.
 
+#include <hwy/cache_control.h>
+
 #include <span>
 #include <vector>
 
@@ -36,6 +38,7 @@ class MetaballSource : public TileSource {
 
   std::size_t size() const override { return field_.balls.size(); }
   Placement place(std::size_t index) const override;
+  void prefetch(std::size_t index) const override { hwy::Prefetch(&field_.balls[index]); }
   bool isBall(std::size_t) const override { return true; }
   Placement placeBall(const RigidMotion& motion, const glm::vec3& center, float radius) const override {
     return projection_.placeSphere(motion(center), static_cast<double>(radius));

@@ -1,5 +1,7 @@
 #include "core/tiles/quadric_source.h"
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -95,6 +97,17 @@ QuadricSource::Placed QuadricSource::at(std::size_t index) const {
 
 bool QuadricSource::isBall(std::size_t index) const {
   return at(index).sphere != nullptr;
+}
+
+void QuadricSource::prefetch(std::size_t index) const {
+  const Placed q = at(index);
+  if (q.sphere) {
+    hwy::Prefetch(q.sphere);
+  } else if (q.cylinder) {
+    hwy::Prefetch(q.cylinder);
+  } else {
+    hwy::Prefetch(q.ellipsoid);
+  }
 }
 
 Placement QuadricSource::place(std::size_t index) const {

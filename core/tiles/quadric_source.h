@@ -41,6 +41,7 @@ class QuadricSource : public TileSource {
 
   std::size_t size() const override { return size_; }
   Placement place(std::size_t index) const override;
+  void prefetch(std::size_t index) const override;
   bool isBall(std::size_t index) const override;
   Placement placeBall(const RigidMotion& motion, const glm::vec3& center, float radius) const override {
     return projection_.placeSphere(motion(center), static_cast<double>(radius));

@@ -34,7 +34,10 @@ void QuadricTiles::cast(const TileTarget& target, const PlaneChannels& channels,
     const TileBlock& block = lists_.block(b);
     thread_local std::vector<QuadricRecord> records;
     records.resize(block.members.size());
-    for (std::size_t i = 0; i < records.size(); ++i) source.record(block.members[i], records[i]);
+    for (std::size_t i = 0; i < records.size(); ++i) {
+      if (i + kPrefetched < records.size()) source.prefetch(block.members[i + kPrefetched]);
+      source.record(block.members[i], records[i]);
+    }
     TileRays rays = makeRays(target, LaneOrder::rows);
     TilePixels pixels;
     for (int t = 0; t < kTilesPerBlock; ++t) {

@@ -18,46 +18,6 @@ namespace {
 constexpr std::size_t kSlabs = 16, kFewestClusters = 128, kMostClusters = 2048;  // of a slab
 constexpr std::uint32_t kPlacedByTask = 256;                                     // clusters
 
-// A smaller disc holds no cell: half a cell's diagonal [pixels].
-constexpr float kLeastDisc = 0.70f / kCellsPerPixel;
-// Of larger ones, the rows of cells are looked at pixel by pixel: few more would count.
-constexpr float kFineDisc = 3;
-
-// Marks the cells of a tile that lie in a disc; x, y: its centre relative to the tile's corner. Returns
-// whether any is new.
-bool coverCells(TileCells& cells, float x, float y, float radius) {
-  const int step = radius > kFineDisc ? kCellsPerPixel : 1;  // rows that are taken together
-  const float height = static_cast<float>(step) / kCellsPerPixel, r2 = radius * radius;
-  constexpr float kSide = kTileSize;
-  const int from = static_cast<int>(std::clamp(y - radius, 0.0f, kSide) * kCellsPerPixel) / step * step;
-  const int to =
-      std::min(static_cast<int>(std::clamp(y + radius, 0.0f, kSide) * kCellsPerPixel) + 1, kTileCells);
-  std::uint32_t added = 0;
-  for (int row = from; row < to; row += step) {
-    const float dy = std::abs(static_cast<float>(row) / kCellsPerPixel + 0.5f * height - y) + 0.5f * height;
-    const float under = r2 - dy * dy;
-    if (!(under > 0)) continue;
-    const float half = std::sqrt(under);
-    const auto low = static_cast<int>(std::ceil(std::max(x - half, 0.0f) * kCellsPerPixel));
-    const auto high = static_cast<int>(std::min(x + half, kSide) * kCellsPerPixel);
-    if (low >= high) continue;
-    const auto bits =
-        static_cast<std::uint32_t>(((std::uint64_t{1} << high) - 1) & ~((std::uint64_t{1} << low) - 1));
-    for (int i = row; i < row + step; ++i) {
-      std::uint32_t& here = cells[static_cast<std::size_t>(i)];
-      added |= bits & ~here;
-      here |= bits;
-    }
-  }
-  return added != 0;
-}
-
-bool allCovered(const TileCells& cells) {
-  std::uint32_t all = ~std::uint32_t{0};
-  for (const std::uint32_t row : cells) all &= row;
-  return all == ~std::uint32_t{0};
-}
-
 }  // namespace
 
 std::uint32_t TileLists::bucketOf(float front) const {
@@ -139,6 +99,7 @@ void TileLists::fillBlock(int index, const TileSource& source, bool cut) {
                     last = blockFirst_[static_cast<std::size_t>(index) + 1];
   if (first < last && f.cells.empty()) f.cells.resize(kTilesPerBlock);
   for (std::size_t k = first; k < last; ++k) {
+    if (k + kPrefetched < last) source.prefetch(sorted_[blockEntries_[k + kPrefetched]].index);
     const Placed& p = sorted_[blockEntries_[k]];
     if (f.open == 0 && p.place.front + slack() <= f.allBehind) break;
     const int x0 = std::max(p.place.x0 - blockX, 0), x1 = std::min(p.place.x1 - blockX, tilesX - 1);

@@ -14,6 +14,7 @@
 
 #include "core/tiles/clusters.h"
 #include "core/tiles/placement.h"
+#include "core/tiles/tile_cells.h"
 #include "core/tiles/tile_target.h"
 
 namespace meniscus::tiles {
@@ -24,6 +25,8 @@ class TileSource {
   virtual ~TileSource() = default;
   virtual std::size_t size() const = 0;
   virtual Placement place(std::size_t index) const = 0;
+  /// Says that the primitive is wanted soon: it may lie anywhere in memory.
+  virtual void prefetch(std::size_t index) const = 0;
   /// Whether place() is placeBall() of the primitive's own bounding sphere.
   virtual bool isBall(std::size_t index) const = 0;
   virtual Occluder occluder(std::size_t index) const = 0;
@@ -33,12 +36,6 @@ class TileSource {
   virtual void placeBalls(const RigidMotion& motion, const Cluster& cluster,
                           std::span<const Clusters::Ball> balls, Placement* out) const = 0;
 };
-
-inline constexpr int kCellsPerPixel = 4;  ///< along a side: fine enough for atoms of a fifth of a pixel
-inline constexpr int kTileCells = kTileSize * kCellsPerPixel;
-/// A bit for each cell of a tile, row by row.
-using TileCells = std::array<std::uint32_t, kTileCells>;
-static_assert(kTileCells == 32);
 
 /// The lists of a block of tiles.
 struct TileBlock {
@@ -51,6 +48,9 @@ struct TileBlock {
     return std::span(entries).subspan(first[t], first[t + 1] - first[t]);
   }
 };
+
+/// How far ahead primitives are asked for.
+inline constexpr std::size_t kPrefetched = 8;
 
 class TileLists {
  public:
