@@ -1,7 +1,7 @@
 // Spheres from tile lists against splatting them and against Embree, binning or build included, 1024 x 768, a
 // ball of atoms as dense as a protein that fills the height.
 //
-//   tiles [repetitions [frames | atoms ...]] > tiles.csv
+//   tiles [repetitions [frames | instructions | atoms ...]] > tiles.csv
 //
 // Times are medians of interleaved repetitions, by the clock and of the processor (all threads: what a
 // machine busy with other work distorts less); ratios are within one run. Nothing is read back.
@@ -9,7 +9,9 @@
 #include <fmt/format.h>
 #include <glad/gl.h>
 #include <sys/resource.h>
+#include <tbb/global_control.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -24,6 +26,7 @@
 #ifdef MENISCUS_BENCH_EMBREE
 #include "bench/embree_spheres.h"
 #endif
+#include "bench/instructions.h"
 #include "core/tiles/field_tiles.h"
 #include "core/tiles/instruction_sets.h"
 #include "core/tiles/quadric_tiles.h"
@@ -290,15 +293,49 @@ void measureWidths(int wanted, int repetitions) {
   std::fflush(stdout);
 }
 
+// Instructions of a pixel that shows something, lists kept, in a block of tiles halfway out. Takes half an
+// hour: they are counted one by one.
+void measureInstructions(int wanted) {
+  const tbb::global_control oneThread(tbb::global_control::max_allowed_parallelism, 1);
+  const Primitives primitives = proteinLike(wanted);
+  const MetaballField field = surfaceOf(primitives);
+  constexpr int kBlock = tiles::kTileSize * tiles::kBlockTiles;
+  const tiles::TileTarget target{
+      filling(primitives), primitives.origin, {5 * kBlock, 4 * kBlock, kBlock, kBlock}, {0, 0}};
+  tiles::QuadricTiles caster;
+  caster.setPrimitives(&primitives);
+  tiles::FieldTiles surface;
+  surface.setField(&field);
+  tiles::Planes planes;
+  const auto print = [&](const char* what, const std::string& set, const std::function<void()>& cast) {
+    tiles::useInstructionSet(set);
+    cast();
+    const std::uint64_t instructions = instructionsOf(cast);
+    tiles::useInstructionSet("");
+    const auto shown = std::ranges::count_if(planes.depth, [](float depth) { return depth > 0; });
+    fmt::print("instructions,{},\"{}, {}\",{:.1f},\n", primitives.spheres.size(), what, set,
+               static_cast<double>(instructions) / static_cast<double>(shown));
+    std::fflush(stdout);
+  };
+  for (const std::string& set : tiles::instructionSets()) {
+    print("spheres", set, [&] { caster.cast(target, {}, planes); });
+    print("surface", set, [&] { surface.cast(target, {}, planes); });
+  }
+}
+
 }  // namespace
 }  // namespace meniscus::bench
 
 int main(int argc, char** argv) {
   try {
     using namespace meniscus;
-    const auto context = Context::create(Backend::automatic);
     const int repetitions = argc > 1 ? std::atoi(argv[1]) : 9;
     fmt::print("kind,atoms,what,value or wall ms,processor ms\n# {}\n", tiles::instructionSet());
+    if (argc > 2 && std::string_view(argv[2]) == "instructions") {
+      bench::measureInstructions(58000);
+      return 0;
+    }
+    const auto context = Context::create(Backend::automatic);
     if (argc > 2 && std::string_view(argv[2]) == "frames") {
       bench::measureFrames(58000, repetitions);
       return 0;
