@@ -134,6 +134,7 @@ RenderSettings renderSettingsOf(const RenderOptions& options) {
   settings.fog = options.fog;
   settings.surface = options.surface;
   settings.quadrics = options.quadrics;
+  settings.levelOfDetail = options.levelOfDetail;
   return settings;
 }
 

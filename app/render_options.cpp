@@ -93,6 +93,12 @@ void addOutputOptions(CLI::App& app, RenderOptions& o) {
               [&o](auto& n, auto& v) { o.background = parseBackground(n, v); });
   group.value("--samples", "N", "Rays per pixel, 1 to 256: more gives smoother edges [16]",
               [&o](auto& n, auto& v) { o.samples = parseInteger(n, v, 1, kMaxSamples); });
+  group.value("--level-of-detail", "on|off",
+              "Where every atom is less than 0.7 pixels across, a ball may\n"
+              "stand for several of them, which covers as much [on]",
+              [&o](auto& n, auto& v) {
+                o.levelOfDetail = parseChoice<bool>(n, v, {{"on", true}, {"off", false}});
+              });
   group.value("--depth", "8|16", "Bits per channel of a PNG [8]; EXR is floating point",
               [&o](auto& n, auto& v) {
                 o.bitDepth = parseChoice<int>(n, v, {{"8", 8}, {"16", 16}});

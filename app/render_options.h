@@ -61,6 +61,7 @@ struct RenderOptions {
 
   ImageSize size;
   int samples = 16;
+  bool levelOfDetail = true;
   Background background;
   std::optional<double> keyLight, fillLight, ambientLight, highlight;  ///< nothing = the default
   std::optional<glm::dvec3> keyDirection;  ///< the way the key light travels, view space

@@ -103,6 +103,7 @@ struct KeptShadowMap {
   ShadowMap map;
   SurfaceSettings surface;
   QuadricMethod quadrics = QuadricMethod::automatic;
+  bool thinned = false;
   bool translucent = false;  // surfaces cast no shadow
   TextureLease texture{nullptr, ReturnToPool{}};
 };
@@ -123,6 +124,7 @@ struct Renderer::Impl {
   TileQuadrics tileQuadrics;
   GlslTileQuadrics glslTileQuadrics;
   QuadricChoice quadricChoice;
+  bool thinned = false;  // quadrics much smaller than a pixel
   TriangleBuffers triangles;
   SurfacePasses surfaces;
   ShadeUniforms shadeUniforms;
@@ -159,7 +161,8 @@ struct Renderer::Impl {
     glDisable(GL_MULTISAMPLE);
   }
 
-  void prepare(QuadricMethod method, const SurfaceSettings& surface) {
+  void prepare(QuadricMethod method, bool levelOfDetail, const SurfaceSettings& surface) {
+    thinned = levelOfDetail;
     if (!options.shaderDir.empty()) shaders.reloadIfChanged();
     stats.omissions.clear();  // of an earlier picture
     Stopwatch watch(stats.uploadMs);
@@ -187,6 +190,10 @@ struct Renderer::Impl {
     return block;
   }
 
+  tiles::TileTarget targetOf(const View& view, const Tile& tile, glm::vec2 sampleShift) const {
+    return {view, primitives->origin, {tile.x, tile.y, tile.width, tile.height}, sampleShift, thinned};
+  }
+
   // All that is to be seen, or all but the surfaces, into the channels of a G-buffer. setView() must have
   // been called alike.
   void addScene(FrameGraph& graph, const View& view, const Tile& tile, glm::vec2 sampleShift,
@@ -196,9 +203,9 @@ struct Renderer::Impl {
     } else if (primitives->noQuadrics()) {
       graph.leaveOut("pass " + prefix + "tiles", "the scene has no quadrics");
     } else if (quadricChoice.method == QuadricMethod::tiles) {
-      tileQuadrics.add(graph, view, tile, sampleShift, gbuffer, prefix);
+      tileQuadrics.add(graph, targetOf(view, tile, sampleShift), gbuffer, prefix);
     } else {
-      glslTileQuadrics.add(graph, shaders, view, tile, sampleShift, gbuffer, prefix);
+      glslTileQuadrics.add(graph, shaders, targetOf(view, tile, sampleShift), gbuffer, prefix);
     }
     leaveOutOtherQuadrics(graph, prefix);
     addTriangles(graph, triangles, shaders, gbuffer, prefix);
@@ -386,7 +393,8 @@ void Renderer::Impl::drawShadowMap(Frame& frame) {
   const View light = makeLightView(frame.view, frame.shade.lighting.key, bounds, texel, maxSize, penumbra);
   KeptShadowMap& kept = keptShadowMap;
   if (kept.map.drawn() && kept.map.light == light && kept.surface == frame.settings.surface &&
-      kept.quadrics == quadricChoice.method && kept.translucent == frame.translucent) {
+      kept.quadrics == quadricChoice.method && kept.thinned == thinned &&
+      kept.translucent == frame.translucent) {
     frame.shadowMap = kept.map;
     stats.omissions.push_back({"pass shadow map", "the light and the scene are those of the picture before"});
     return;
@@ -426,8 +434,8 @@ void Renderer::Impl::drawShadowMap(Frame& frame) {
     }
     frame.shadowMap.heights = shadowHeights;
   }
-  kept = {frame.shadowMap, frame.settings.surface, quadricChoice.method, frame.translucent,
-          std::move(texture)};
+  kept = {frame.shadowMap, frame.settings.surface, quadricChoice.method,
+          thinned,         frame.translucent,      std::move(texture)};
 }
 
 // What the effects of a whole picture share.
@@ -575,7 +583,7 @@ void Renderer::renderPicture(const View& view, const Lighting& lighting, const B
   MENISCUS_CHECK(settings.samples >= 1 && settings.samples <= kMaxSamples);
   MENISCUS_CHECK(!layout.layers.data() || layout.format == PixelFormat::rgbaFloat);
   Impl& r = *impl_;
-  r.prepare(settings.quadrics, settings.surface);
+  r.prepare(settings.quadrics, settings.levelOfDetail, settings.surface);
   Frame frame{view,
               settings,
               {lighting, background, settings.occlusion, settings.fog, settings.depthUnsharp, settings.lines,
@@ -671,7 +679,7 @@ void Renderer::renderPicture(const View& view, const Lighting& lighting, const B
 HitImage Renderer::renderHits(const View& view, HitChannels channels, const SurfaceSettings& surface,
                               QuadricMethod quadrics) {
   Impl& r = *impl_;
-  r.prepare(quadrics, surface);
+  r.prepare(quadrics, false, surface);
   const int width = view.size.width, height = view.size.height;
   const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   HitImage image;
@@ -718,7 +726,7 @@ HitImage Renderer::renderHits(const View& view, HitChannels channels, const Surf
 SurfaceLayerImage Renderer::renderLayers(const View& view, const SurfaceSettings& surface) {
   MENISCUS_CHECK(surface.translucent());
   Impl& r = *impl_;
-  r.prepare(QuadricMethod::automatic, surface);
+  r.prepare(QuadricMethod::automatic, false, surface);
   const Tile tile{0, 0, view.size.width, view.size.height};
   const std::size_t pixels = static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
   r.setView(view, tile, {0, 0});

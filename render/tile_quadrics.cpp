@@ -1,5 +1,7 @@
 #include "render/tile_quadrics.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "core/tiles/instruction_sets.h"
@@ -24,22 +26,30 @@ void TileQuadrics::setPrimitives(std::shared_ptr<const Primitives> primitives) {
   camera_ = {};
   light_ = {};
   planes_ = {};
-  prepared_ = false;
+  levels_ = nullptr;
 }
 
-// Clusters are made once for both, and not before something is drawn.
+// Clusters and levels of detail are made once for both, and not before something is drawn.
 void TileQuadrics::prepare() {
-  if (std::exchange(prepared_, true)) return;
-  const auto clusters = std::make_shared<const tiles::Clusters>(tiles::clustersOf(*primitives_));
-  camera_.setPrimitives(primitives_.get(), clusters);
-  light_.setPrimitives(primitives_.get(), clusters);
+  if (levels_) return;
+  levels_ = tiles::levelsOf(*primitives_);
+  camera_.setPrimitives(levels_);
+  light_.setPrimitives(levels_);
 }
 
-void TileQuadrics::add(FrameGraph& graph, const View& view, const Tile& tile, glm::vec2 sampleShift,
-                       const GBufferRefs& g, const std::string& prefix) {
-  const tiles::TileTarget target{
-      view, primitives_->origin, {tile.x, tile.y, tile.width, tile.height}, sampleShift};
+void tellDetail(FrameGraph& graph, tiles::DetailLevels& levels, const tiles::TileTarget& target,
+                const std::string& prefix) {
+  const int level = levels.levelFor(target);
+  if (level == 0) return;
+  graph.leaveOut(prefix + "detail", fmt::format("{} balls stand for {} quadrics much smaller than a pixel",
+                                                levels.level(level).primitives->counts().all(),
+                                                levels.level(0).primitives->counts().all()));
+}
+
+void TileQuadrics::add(FrameGraph& graph, const tiles::TileTarget& target, const GBufferRefs& g,
+                       const std::string& prefix) {
   prepare();
+  tellDetail(graph, *levels_, target, prefix);
   tiles::QuadricTiles& caster = prefix.empty() ? camera_ : light_;
   // The framebuffer is bound for nothing but its clearing: the part with no block in it stays background.
   graph.addPass(prefix + "tiles", {}, attachmentsOf(g),

@@ -8,7 +8,6 @@
 #include "core/tiles/quadric_tiles.h"
 #include "render/frame_graph.h"
 #include "render/gbuffer.h"
-#include "render/view_block.h"
 
 namespace meniscus {
 
@@ -20,6 +19,10 @@ struct QuadricChoice {
 /// A context must be current.
 QuadricChoice chooseQuadrics(QuadricMethod method);
 
+/// Says for --explain if fewer balls stand for quadrics that are smaller than a pixel.
+void tellDetail(FrameGraph& graph, tiles::DetailLevels& levels, const tiles::TileTarget& target,
+                const std::string& prefix);
+
 class TileQuadrics {
  public:
   /// What to draw; gives up the lists of what was drawn before.
@@ -27,8 +30,8 @@ class TileQuadrics {
 
   /// Adds one pass for all kinds of quadrics, of which there must be any; it replaces what the channels hold.
   /// `this` must live until the graph was executed. `prefix` goes before the pass's name.
-  void add(FrameGraph& graph, const View& view, const Tile& tile, glm::vec2 sampleShift,
-           const GBufferRefs& gbuffer, const std::string& prefix = {});
+  void add(FrameGraph& graph, const tiles::TileTarget& target, const GBufferRefs& gbuffer,
+           const std::string& prefix = {});
 
  private:
   void prepare();
@@ -36,7 +39,7 @@ class TileQuadrics {
   std::shared_ptr<const Primitives> primitives_;
   tiles::QuadricTiles camera_, light_;  // lists of the picture outlive a shadow map
   tiles::Planes planes_;
-  bool prepared_ = false;
+  std::shared_ptr<tiles::DetailLevels> levels_;  // of both; none before something is drawn
 };
 
 }  // namespace meniscus

@@ -7,6 +7,7 @@
 
 #include "core/tiles/quadric_source.h"
 #include "render/post/fullscreen.h"
+#include "render/tile_quadrics.h"
 
 namespace meniscus {
 
@@ -42,7 +43,7 @@ std::uint32_t colorOf(std::uint32_t albedo) {
 
 void GlslTileQuadrics::setPrimitives(std::shared_ptr<const Primitives> primitives) {
   primitives_ = std::move(primitives);
-  clusters_ = nullptr;
+  levels_ = nullptr;
   camera_ = {};
   light_ = {};
 }
@@ -50,9 +51,9 @@ void GlslTileQuadrics::setPrimitives(std::shared_ptr<const Primitives> primitive
 void GlslTileQuadrics::update(Lists& lists, const tiles::TileTarget& target) {
   if (lists.valid && tiles::sameLists(lists.target, target)) return;
   lists.valid = false;
-  if (!clusters_) clusters_ = std::make_shared<const tiles::Clusters>(tiles::clustersOf(*primitives_));
-  const tiles::QuadricSource source(*primitives_, target);
-  lists.made.build(source, *clusters_, target);
+  const tiles::DetailLevels::Level all = levels_->level(levels_->levelFor(target));
+  const tiles::QuadricSource source(*all.primitives, target);
+  lists.made.build(source, *all.clusters, target);
   const int blocks = lists.made.grid().blocks();
   std::vector<std::size_t> firsts(static_cast<std::size_t>(blocks) + 1, 0);  // members before a block's own
   for (int b = 0; b < blocks; ++b)
@@ -84,11 +85,11 @@ void GlslTileQuadrics::update(Lists& lists, const tiles::TileTarget& target) {
   lists.valid = true;
 }
 
-void GlslTileQuadrics::add(FrameGraph& graph, ShaderLibrary& shaders, const View& view, const Tile& tile,
-                           glm::vec2 sampleShift, const GBufferRefs& g, const std::string& prefix) {
+void GlslTileQuadrics::add(FrameGraph& graph, ShaderLibrary& shaders, const tiles::TileTarget& target,
+                           const GBufferRefs& g, const std::string& prefix) {
   Lists& lists = prefix.empty() ? camera_ : light_;
-  const tiles::TileTarget target{
-      view, primitives_->origin, {tile.x, tile.y, tile.width, tile.height}, sampleShift};
+  if (!levels_) levels_ = tiles::levelsOf(*primitives_);
+  tellDetail(graph, *levels_, target, prefix);
   graph.addPass(prefix + "tiles", {g.depth}, attachmentsOf(g),
                 [this, &shaders, &lists, target, g, prefix](const PassContext& context) {
                   context.part(prefix + "tiles: lists", [&] { update(lists, target); });

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "core/primitives.h"
+#include "core/tiles/detail_levels.h"
 #include "core/tiles/tile_lists.h"
 #include "render/frame_graph.h"
 #include "render/gbuffer.h"
@@ -22,8 +23,8 @@ class GlslTileQuadrics {
 
   /// Adds one pass for all kinds of quadrics, of which there must be any. The view's uniform block
   /// must be bound, `this` live until the graph was executed. `prefix` goes before the pass's name.
-  void add(FrameGraph& graph, ShaderLibrary& shaders, const View& view, const Tile& tile,
-           glm::vec2 sampleShift, const GBufferRefs& gbuffer, const std::string& prefix = {});
+  void add(FrameGraph& graph, ShaderLibrary& shaders, const tiles::TileTarget& target,
+           const GBufferRefs& gbuffer, const std::string& prefix = {});
   std::vector<ResourceStats> buffers() const;
 
  private:
@@ -40,8 +41,8 @@ class GlslTileQuadrics {
             const GBufferRefs& g) const;
 
   std::shared_ptr<const Primitives> primitives_;
-  std::shared_ptr<const tiles::Clusters> clusters_;
-  Lists camera_, light_;  // lists of the picture outlive a shadow map
+  std::shared_ptr<tiles::DetailLevels> levels_;  // none before something is drawn
+  Lists camera_, light_;                         // lists of the picture outlive a shadow map
 };
 
 }  // namespace meniscus

@@ -15,6 +15,7 @@ using enum SettingType;
 constexpr std::array kSettings = std::to_array<Setting>({
     {"size", picture, text},
     {"samples", picture, integer},
+    {"level-of-detail", picture, onOff},
     {"background", picture, text},
     {"depth", picture, integer},
     {"dpi", picture, number},

@@ -26,16 +26,6 @@ glm::dvec3 thirdAxis(const EllipsoidPrimitive& e) {
          static_cast<double>(e.shortest);
 }
 
-const QuadricCopy kOnce{};
-
-// Calls f(quadrics, copies) for those in one place, and for each unit.
-template <typename F>
-void forSets(const Primitives& primitives, F f) {
-  if (primitives.quadricCount() > 0) f(primitives, std::span<const QuadricCopy>(&kOnce, 1));
-  for (const QuadricUnit& unit : primitives.units)
-    if (unit.quadricCount() > 0) f(unit, std::span<const QuadricCopy>(unit.copies));
-}
-
 Clusters::Ball ballOf(const Quadrics& quadrics, std::size_t index) {
   const std::size_t spheres = quadrics.spheres.size(), rods = quadrics.cylinders.size();
   if (index < spheres) {

@@ -30,8 +30,17 @@ struct QuadricRecord {
   float radii[3];
 };
 
-/// Groups of neighbouring quadrics, in the order of QuadricSource.
+/// Groups of neighbouring quadrics: a set for each call of forSets().
 Clusters clustersOf(const Primitives& primitives);
+
+/// Calls f(quadrics, copies) for those in one place, if there are any, and for each unit that is not empty.
+template <typename F>
+void forSets(const Primitives& primitives, F f) {
+  static const QuadricCopy kOnce{};
+  if (primitives.quadricCount() > 0) f(primitives, std::span<const QuadricCopy>(&kOnce, 1));
+  for (const QuadricUnit& unit : primitives.units)
+    if (unit.quadricCount() > 0) f(unit, std::span<const QuadricCopy>(unit.copies));
+}
 
 /// Quadrics in one place, and units in each of theirs, are numbered through: set after set, copy after copy.
 class QuadricSource : public TileSource {

@@ -9,21 +9,21 @@
 
 namespace meniscus::tiles {
 
-void QuadricTiles::setPrimitives(const Primitives* primitives, std::shared_ptr<const Clusters> clusters) {
-  primitives_ = primitives;
-  clusters_ = std::move(clusters);
+void QuadricTiles::setPrimitives(std::shared_ptr<DetailLevels> levels) {
+  levels_ = std::move(levels);
   valid_ = false;
 }
 
 void QuadricTiles::setPrimitives(const Primitives* primitives) {
-  setPrimitives(primitives, std::make_shared<const Clusters>(clustersOf(*primitives)));
+  setPrimitives(levelsOf(*primitives));
 }
 
 void QuadricTiles::cast(const TileTarget& target, const PlaneChannels& channels, Planes& planes,
                         Extent extent) {
-  const QuadricSource source(*primitives_, target);
+  const DetailLevels::Level all = levels_->level(levels_->levelFor(target));
+  const QuadricSource source(*all.primitives, target);
   if (!valid_ || !sameLists(listed_, target)) {
-    lists_.build(source, *clusters_, target);
+    lists_.build(source, *all.clusters, target);
     listed_ = target;
     valid_ = true;
     ++builds_;

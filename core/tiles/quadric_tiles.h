@@ -4,14 +4,16 @@
 #include <memory>
 
 #include "core/primitives.h"
+#include "core/tiles/detail_levels.h"
 #include "core/tiles/tile_lists.h"
 
 namespace meniscus::tiles {
 
 class QuadricTiles {
  public:
-  /// What to draw from now on; must outlive the next call. clusters: of the same primitives.
-  void setPrimitives(const Primitives* primitives, std::shared_ptr<const Clusters> clusters);
+  /// What to draw from now on.
+  void setPrimitives(std::shared_ptr<DetailLevels> levels);
+  /// They must outlive the next call.
   void setPrimitives(const Primitives* primitives);
   /// Fills planes of target.area, or of the part of it that is occupied (at least one pixel). Lists are built
   /// again only if something but the sample's shift has changed.
@@ -22,8 +24,7 @@ class QuadricTiles {
   int builds() const { return builds_; }
 
  private:
-  const Primitives* primitives_ = nullptr;
-  std::shared_ptr<const Clusters> clusters_;
+  std::shared_ptr<DetailLevels> levels_;
   TileLists lists_;
   TileTarget listed_;
   bool valid_ = false;

@@ -12,7 +12,8 @@ bool sameLists(const TileTarget& a, const TileTarget& b) {
   const View& w = b.view;
   return v.projection == w.projection && v.rotation == w.rotation && v.pivot == w.pivot &&
          v.distance == w.distance && v.pixelSize == w.pixelSize && v.center == w.center &&
-         v.nearZ == w.nearZ && v.farZ == w.farZ && a.origin == b.origin && a.area == b.area;
+         v.nearZ == w.nearZ && v.farZ == w.farZ && a.origin == b.origin && a.area == b.area &&
+         a.thinned == b.thinned;
 }
 
 void Planes::resize(const PixelArea& newArea, const PlaneChannels& wanted) {

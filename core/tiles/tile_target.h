@@ -32,6 +32,7 @@ struct TileTarget {
   glm::dvec3 origin{0.0};  ///< Primitives::origin
   PixelArea area;
   glm::vec2 sampleShift{0.0f};  ///< of every ray within its pixel, at most half a pixel
+  bool thinned = false;  ///< few balls may stand for many quadrics smaller than a pixel (detail_levels.h)
 };
 
 /// Whether the same primitives make the same lists: all but the shift of the rays is the same.

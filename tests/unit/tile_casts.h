@@ -20,6 +20,14 @@ inline TileTarget targetOf(const Primitives& primitives, const View& view, glm::
   return {view, primitives.origin, {0, 0, view.size.width, view.size.height}, shift};
 }
 
+inline View viewOfBounds(const Primitives& primitives, ImageSize size, Projection projection) {
+  Camera camera;
+  camera.projection = projection;
+  camera.orientation = glm::angleAxis(0.7, glm::normalize(glm::dvec3(1, 2, -1)));
+  const BoundingSphere bounds = primitives.bounds();
+  return makeView(fitted(camera, size, std::vector<FitSphere>{{bounds.center, bounds.radius}}), size, bounds);
+}
+
 // Planes of the whole area, background where there was nothing.
 inline Planes spread(const Planes& part, const TileTarget& target) {
   Planes whole;

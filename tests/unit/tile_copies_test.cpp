@@ -28,14 +28,6 @@ Primitives manyCopies(int perKind, int copies, unsigned seed, double extent) {
   return out;
 }
 
-View viewOfBounds(const Primitives& primitives, ImageSize size, Projection projection) {
-  Camera camera;
-  camera.projection = projection;
-  camera.orientation = glm::angleAxis(0.7, glm::normalize(glm::dvec3(1, 2, -1)));
-  const BoundingSphere bounds = primitives.bounds();
-  return makeView(fitted(camera, size, std::vector<FitSphere>{{bounds.center, bounds.radius}}), size, bounds);
-}
-
 // Pixels that show something else, or the same at a distance that rounding does not explain.
 std::size_t differences(const Planes& a, const Planes& b, float rounding) {
   std::size_t different = 0;
