@@ -7,7 +7,9 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "app/command_line.h"
 #include "app/commands.h"
+#include "app/option_values.h"
 #include "app/render_options.h"
 #include "app/view/viewer.h"
 #include "core/error.h"
@@ -28,6 +30,9 @@ constexpr const char* kHelp =
     "\n"
     "Options:\n"
     "  --size WxH                  Pixels of the picture when the window opens [1024x768]\n"
+    "  --context auto|glx|egl|osmesa\n"
+    "                              How the window itself reaches OpenGL [auto: the first that works]; what\n"
+    "                              draws the picture in it is --backend, as for meniscus render\n"
     "  --stats FILE                Write how long the window let its user wait, as JSON, when it is closed\n"
     "  ...                         What says how a picture looks, as for meniscus render: --representation,\n"
     "                              --color, --show, --style, --shadows, ...\n"
@@ -58,14 +63,31 @@ void requireExists(const std::string& file) {
   if (!std::filesystem::exists(file)) throw InputError(file + ": no such file: check the path");
 }
 
+// A window's own option is taken out; the rest is render's.
+WindowContext takeContext(std::vector<std::string>& arguments) {
+  std::string context = "auto";
+  const std::unique_ptr<CLI::App> app = makeCommandLine("view", "", "");
+  app->add_option("--context", context, "auto, glx, egl or osmesa")->take_last();
+  app->allow_extras();
+  if (!parseCommandLine(*app, arguments)) throw UsageError("--help: is no setting");  // it has been shown
+  arguments = app->remaining();
+  return parseChoice<WindowContext>("--context", context,
+                                    {{"auto", WindowContext::automatic},
+                                     {"glx", WindowContext::glx},
+                                     {"egl", WindowContext::egl},
+                                     {"osmesa", WindowContext::osmesa}});
+}
+
 }  // namespace
 
-int runView(const std::vector<std::string>& arguments) {
+int runView(const std::vector<std::string>& given) {
   const auto isHelp = [](const std::string& argument) { return argument == "--help" || argument == "-h"; };
-  if (std::any_of(arguments.begin(), arguments.end(), isHelp)) {
+  if (std::any_of(given.begin(), given.end(), isHelp)) {
     std::fputs(kHelp, stdout);
     return 0;
   }
+  std::vector<std::string> arguments = given;
+  const WindowContext context = takeContext(arguments);
   RenderOptions options = parseSettings(arguments);
   requireNoOutputs(options);
   std::erase_if(options.given,
@@ -73,7 +95,7 @@ int runView(const std::vector<std::string>& arguments) {
   for (const std::string& file : options.files) requireExists(file);
   for (const std::string& scene : options.scenes) requireExists(scene);
   if (!options.statsFile.empty()) requireWritable(options.statsFile);
-  Viewer viewer(options);
+  Viewer viewer(options, context);
   viewer.run();
   if (!options.statsFile.empty()) writeTextFile(options.statsFile, viewer.statsAsJson());
   return 0;

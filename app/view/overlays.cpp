@@ -140,6 +140,7 @@ void drawBudget(const Viewer& viewer, bool& shown) {
                 frame->samples, frame->milliseconds);
     ImGui::Text("input to picture %.0f ms, to full quality %.0f ms", viewer.latency().lastMovingMs(),
                 viewer.latency().lastFullMs());
+    ImGui::Text("window by %s", viewer.windowApi().c_str());
     if (ImGui::BeginTable("passes", 3)) {
       for (const PassStats& pass : frame->stats.passes) {
         ImGui::TableNextRow();

@@ -46,8 +46,10 @@ std::string withoutPlaceholders(const std::string& text) {
 
 }  // namespace
 
-Viewer::Viewer(const RenderOptions& base)
-    : base_(base), window_("Meniscus (starting)", windowSizeFor(base)), worker_(base, &Window::wake) {
+Viewer::Viewer(const RenderOptions& base, WindowContext context)
+    : base_(base),
+      window_("Meniscus (starting)", windowSizeFor(base), context),
+      worker_(base, &Window::wake) {
   window_.onKey = [this](int key, bool control, bool shift) { handleKey(key, control, shift); };
   window_.onDrop = [this](const std::vector<std::string>& dropped) {
     for (const std::string& file : dropped) open(file);
@@ -55,6 +57,7 @@ Viewer::Viewer(const RenderOptions& base)
   for (const std::string& file : base.files) open(file, base.given);
   for (const std::string& scene : base.scenes) open(scene, base.given, true);
   current_ = 0;
+  if (!window_.note().empty()) say(window_.note());
 }
 
 void Viewer::open(const std::string& file, const GivenOptions& given, bool isScene) {

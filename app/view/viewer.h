@@ -21,7 +21,7 @@ namespace meniscus {
 class Viewer {
  public:
   /// Opens a window whose picture has the options' size, and their files and scenes.
-  explicit Viewer(const RenderOptions& base);
+  Viewer(const RenderOptions& base, WindowContext context);
   /// Until the window is closed.
   void run();
   /// What happened, as JSON.

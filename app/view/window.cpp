@@ -3,7 +3,6 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
-#include <backends/imgui_impl_opengl3.h>
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -16,46 +15,6 @@
 namespace meniscus {
 namespace {
 
-// The few functions of OpenGL that lay a picture out; the loader of render/ belongs to the other context.
-struct Gl {
-  void (*genTextures)(int, unsigned*);
-  void (*deleteTextures)(int, const unsigned*);
-  void (*bindTexture)(unsigned, unsigned);
-  void (*texParameteri)(unsigned, unsigned, int);
-  void (*texImage2D)(unsigned, int, int, int, int, int, unsigned, unsigned, const void*);
-  void (*pixelStorei)(unsigned, int);
-  void (*viewport)(int, int, int, int);
-  void (*clearColor)(float, float, float, float);
-  void (*clear)(unsigned);
-};
-
-// Numbers of the OpenGL registry.
-constexpr unsigned kTexture2d = 0x0DE1, kMagFilter = 0x2800, kMinFilter = 0x2801, kWrapS = 0x2802,
-                   kWrapT = 0x2803, kRgba = 0x1908, kUnsignedByte = 0x1401, kUnpackAlignment = 0x0CF5,
-                   kColorBuffer = 0x4000;
-constexpr int kLinear = 0x2601, kClampToEdge = 0x812F, kRgba8 = 0x8058;
-
-Gl windowGl;
-
-template <typename Function>
-void load(Function& function, const char* name) {
-  function = reinterpret_cast<Function>(glfwGetProcAddress(name));
-  if (!function)
-    throw GraphicsError(fmt::format("the window's OpenGL lacks {}; 'meniscus render' needs no window", name));
-}
-
-void loadGl() {
-  load(windowGl.genTextures, "glGenTextures");
-  load(windowGl.deleteTextures, "glDeleteTextures");
-  load(windowGl.bindTexture, "glBindTexture");
-  load(windowGl.texParameteri, "glTexParameteri");
-  load(windowGl.texImage2D, "glTexImage2D");
-  load(windowGl.pixelStorei, "glPixelStorei");
-  load(windowGl.viewport, "glViewport");
-  load(windowGl.clearColor, "glClearColor");
-  load(windowGl.clear, "glClear");
-}
-
 std::string lastError() {
   const char* description = nullptr;
   glfwGetError(&description);
@@ -65,63 +24,52 @@ std::string lastError() {
   return text;
 }
 
-// In this order; OSMesa shows nothing in a window.
-constexpr std::array<std::pair<int, const char*>, 2> kApis{
-    {{GLFW_NATIVE_CONTEXT_API, "GLX"}, {GLFW_EGL_CONTEXT_API, "EGL"}}};
+struct Way {
+  WindowContext context;
+  int api;
+  const char* name;
+};
+
+// In this order: what OSMesa draws takes a copy more to be seen.
+constexpr std::array<Way, 3> kWays{{{WindowContext::glx, GLFW_NATIVE_CONTEXT_API, "GLX"},
+                                    {WindowContext::egl, GLFW_EGL_CONTEXT_API, "EGL"},
+                                    {WindowContext::osmesa, GLFW_OSMESA_CONTEXT_API, "OSMesa"}}};
 
 constexpr const char* kFont = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
 constexpr double kFontSize = 15;
 
 }  // namespace
 
-WindowTexture::~WindowTexture() {
-  if (name_ != 0) windowGl.deleteTextures(1, &name_);
-}
-
-void WindowTexture::set(ImageSize size, std::span<const std::byte> pixels) {
-  if (name_ == 0) windowGl.genTextures(1, &name_);
-  windowGl.bindTexture(kTexture2d, name_);
-  windowGl.texParameteri(kTexture2d, kMinFilter, kLinear);
-  windowGl.texParameteri(kTexture2d, kMagFilter, kLinear);
-  windowGl.texParameteri(kTexture2d, kWrapS, kClampToEdge);
-  windowGl.texParameteri(kTexture2d, kWrapT, kClampToEdge);
-  windowGl.pixelStorei(kUnpackAlignment, 4);
-  windowGl.texImage2D(kTexture2d, 0, kRgba8, size.width, size.height, 0, kRgba, kUnsignedByte, pixels.data());
-}
-
-Window::Window(const std::string& title, ImageSize size) : title_(title) {
+Window::Window(const std::string& title, ImageSize size, WindowContext context) : title_(title) {
   if (!glfwInit())
     throw GraphicsError(
         fmt::format("no window can be opened here ({}); 'meniscus render FILE -o OUT.png' needs "
                     "no display",
                     lastError()));
   try {
-    open(title, size);
+    open(size, context);
     startGui();
   } catch (...) {
-    if (window_) glfwDestroyWindow(window_);
-    glfwTerminate();
+    shut();
     throw;
   }
 }
 
-void Window::open(const std::string& title, ImageSize size) {
+void Window::open(ImageSize size, WindowContext context) {
   std::string failures;
-  for (const auto& [api, name] : kApis) {
-    glfwDefaultWindowHints();
-    glfwWindowHint(GLFW_CONTEXT_CREATION_API, api);
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
-    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-    glfwWindowHint(GLFW_DEPTH_BITS, 0);
-    glfwWindowHint(GLFW_STENCIL_BITS, 0);
-    glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
-    window_ = glfwCreateWindow(size.width, size.height, title.c_str(), nullptr, nullptr);
+  for (const Way& way : kWays) {
+    if (context != WindowContext::automatic && context != way.context) continue;
+    std::string failure = openBy(way.api, size);
     if (window_) {
-      api_ = name;
+      api_ = way.name;
+      if (way.context == WindowContext::osmesa && !failures.empty())
+        note_ = fmt::format("the window is drawn by OSMesa, without a GPU ({})", failures);
       break;
     }
-    failures += fmt::format("{}{}: {}", failures.empty() ? "" : "; ", name, lastError());
+    // GLFW names the way in most of its reasons.
+    if (const std::string name = fmt::format("{}: ", way.name); !failure.starts_with(name))
+      failure = name + failure;
+    failures += (failures.empty() ? "" : "; ") + failure;
   }
   if (!window_)
     throw GraphicsError(
@@ -129,8 +77,6 @@ void Window::open(const std::string& title, ImageSize size) {
                     "window",
                     failures));
   fitIntoScreen();
-  glfwMakeContextCurrent(window_);
-  loadGl();
   glfwSwapInterval(1);
   float scaleX = 1, scaleY = 1;
   glfwGetWindowContentScale(window_, &scaleX, &scaleY);
@@ -146,6 +92,34 @@ void Window::open(const std::string& title, ImageSize size) {
     Window& self = of(window);
     if (self.onDrop) self.onDrop({paths, paths + count});
   });
+}
+
+// Why there is no window_, if there is none.
+std::string Window::openBy(int api, ImageSize size) {
+  glfwDefaultWindowHints();
+  glfwWindowHint(GLFW_CONTEXT_CREATION_API, api);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  glfwWindowHint(GLFW_DEPTH_BITS, 0);
+  glfwWindowHint(GLFW_STENCIL_BITS, 0);
+  glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+  window_ = glfwCreateWindow(size.width, size.height, title_.c_str(), nullptr, nullptr);
+  if (!window_) {
+    const std::string reason = lastError();
+    return reason.ends_with("Library not found") && api == GLFW_OSMESA_CONTEXT_API
+               ? reason + " (Debian: libosmesa6)"
+               : reason;
+  }
+  try {
+    glfwMakeContextCurrent(window_);
+    loadWindowFunctions(glfwGetProcAddress);
+    if (api == GLFW_OSMESA_CONTEXT_API) canvas_ = makeCanvas(window_);
+    return {};
+  } catch (const GraphicsError& error) {
+    glfwDestroyWindow(std::exchange(window_, nullptr));
+    return error.what();
+  }
 }
 
 // What is larger than the screen, without a window manager that sees to it, could not be reached.
@@ -176,15 +150,22 @@ void Window::startGui() {
   style.FrameRounding = 3;
   style.ScaleAllSizes(scale);
   ImGui_ImplGlfw_InitForOpenGL(window_, true);
-  ImGui_ImplOpenGL3_Init("#version 330");
+  painter_ = std::make_unique<GuiPainter>();
+}
+
+void Window::shut() {
+  painter_.reset();
+  canvas_.reset();
+  if (ImGui::GetCurrentContext()) {
+    ImGui_ImplGlfw_Shutdown();
+    ImGui::DestroyContext();
+  }
+  if (window_) glfwDestroyWindow(window_);
+  glfwTerminate();
 }
 
 Window::~Window() {
-  ImGui_ImplOpenGL3_Shutdown();
-  ImGui_ImplGlfw_Shutdown();
-  ImGui::DestroyContext();
-  glfwDestroyWindow(window_);
-  glfwTerminate();
+  shut();
 }
 
 Window& Window::of(GLFWwindow* window) {
@@ -218,7 +199,6 @@ void Window::wake() {
 }
 
 void Window::draw(const std::function<void()>& draw, bool seen) {
-  ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   ImGui::NewFrame();
   const ImGuiIO& io = ImGui::GetIO();
@@ -231,13 +211,16 @@ void Window::draw(const std::function<void()>& draw, bool seen) {
     return;
   }
   ImGui::Render();
-  int width = 0, height = 0;
-  glfwGetFramebufferSize(window_, &width, &height);
-  windowGl.viewport(0, 0, width, height);
-  windowGl.clearColor(0.16f, 0.17f, 0.19f, 1);
-  windowGl.clear(kColorBuffer);
-  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
-  glfwSwapBuffers(window_);
+  if (canvas_) glfwMakeContextCurrent(window_);  // OSMesa draws in the size that the window had then
+  ImageSize frame;
+  glfwGetFramebufferSize(window_, &frame.width, &frame.height);
+  painter_->paint(frame, *ImGui::GetDrawData());
+  if (canvas_) {
+    painter_->read(frame, pixels_);
+    canvas_->show(frame, pixels_);
+  } else {
+    glfwSwapBuffers(window_);
+  }
 }
 
 ImageSize Window::size() const {

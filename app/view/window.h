@@ -3,38 +3,33 @@
 // which may be older than what they need, only lays them out. Nothing is drawn while nothing happens.
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
+#include "app/view/canvas.h"
+#include "app/view/window_drawing.h"
 #include "core/image.h"
 
 struct GLFWwindow;
 
 namespace meniscus {
 
-/// A picture in the window's context.
-class WindowTexture {
- public:
-  WindowTexture() = default;
-  ~WindowTexture();
-  WindowTexture(const WindowTexture&) = delete;
-  WindowTexture& operator=(const WindowTexture&) = delete;
-  /// RGBA, 8 bits, rows from the top.
-  void set(ImageSize size, std::span<const std::byte> pixels);
-  unsigned name() const { return name_; }
-
- private:
-  unsigned name_ = 0;
+/// How a window reaches OpenGL.
+enum class WindowContext : std::uint8_t {
+  automatic,  ///< GLX, then EGL, then OSMesa
+  glx,
+  egl,
+  osmesa  ///< draws into main memory, without a GPU; for windows of X11
 };
 
 class Window {
  public:
   /// Throws GraphicsError: there is no display, or no OpenGL in a window of it.
-  Window(const std::string& title, ImageSize size);
+  Window(const std::string& title, ImageSize size, WindowContext context);
   ~Window();
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
@@ -64,16 +59,23 @@ class Window {
   bool minimized() const;
   void setTitle(const std::string& title);
   void copy(const std::string& text);
-  /// "GLX", "EGL": how the window reached OpenGL.
+  /// "GLX", "EGL", "OSMesa": how the window reached OpenGL.
   const std::string& api() const { return api_; }
+  /// What its user should know about that; mostly nothing.
+  const std::string& note() const { return note_; }
 
  private:
-  void open(const std::string& title, ImageSize size);
+  void open(ImageSize size, WindowContext context);
+  std::string openBy(int api, ImageSize size);
+  void shut();
   void fitIntoScreen();
   void startGui();
   static Window& of(GLFWwindow* window);
   GLFWwindow* window_ = nullptr;
-  std::string api_, title_;
+  std::unique_ptr<GuiPainter> painter_;
+  std::unique_ptr<Canvas> canvas_;  // nothing where the context shows by itself what it draws
+  std::vector<std::byte> pixels_;
+  std::string api_, note_, title_;
   double contentScale_ = 1;
   bool answersNext_ = false, keyPressed_ = false;
 };
