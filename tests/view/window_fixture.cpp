@@ -70,13 +70,19 @@ int BackgroundProcess::wait() {
 }
 
 void WindowTest::SetUp() {
+  startServer({});
+}
+
+void WindowTest::startServer(const std::vector<std::string>& arguments) {
   // The server chooses a display that is free and says which.
   int ends[2];
   ASSERT_EQ(pipe2(ends, O_CLOEXEC), 0);
-  server_ = std::make_unique<BackgroundProcess>(
-      std::vector<std::string>{"Xvfb", "-displayfd", std::to_string(ends[1]), "-screen", "0", "1280x1024x24",
-                               "-nolisten", "tcp", "-noreset"},
-      BackgroundProcess::Environment{}, folder_.path(), folder_ / "xvfb.log", ends[1]);
+  std::vector<std::string> argv{"Xvfb",      "-displayfd", std::to_string(ends[1]),
+                                "-screen",   "0",          "1280x1024x24",
+                                "-nolisten", "tcp",        "-noreset"};
+  argv.insert(argv.end(), arguments.begin(), arguments.end());
+  server_ = std::make_unique<BackgroundProcess>(argv, BackgroundProcess::Environment{}, folder_.path(),
+                                                folder_ / "xvfb.log", ends[1]);
   close(ends[1]);
   std::string number;
   for (char c; read(ends[0], &c, 1) == 1 && c != '\n';) number += c;
@@ -111,9 +117,9 @@ void WindowTest::waitFor(const std::string& what, const std::function<bool()>& h
 void WindowTest::open(const std::vector<std::string>& arguments) {
   std::vector<std::string> argv{program(), "view", "--stats", "stats.json"};
   argv.insert(argv.end(), arguments.begin(), arguments.end());
-  viewer_ = std::make_unique<BackgroundProcess>(
-      argv, BackgroundProcess::Environment{{"DISPLAY", display_}, {"WAYLAND_DISPLAY", ""}}, folder_.path(),
-      folder_ / "view.log");
+  BackgroundProcess::Environment environment{{"DISPLAY", display_}, {"WAYLAND_DISPLAY", ""}};
+  environment.insert(environment.end(), environment_.begin(), environment_.end());
+  viewer_ = std::make_unique<BackgroundProcess>(argv, environment, folder_.path(), folder_ / "view.log");
   ASSERT_NO_FATAL_FAILURE(waitFor("a window", [this] {
     window_ = xdotool({"search", "--name", "Meniscus"});
     window_ = window_.substr(0, window_.find('\n'));
@@ -141,6 +147,10 @@ void WindowTest::waitForFile(const std::string& name) {
 void WindowTest::waitUntilDrawn() {
   std::this_thread::sleep_for(150ms);
   waitFor("a finished picture", [this] { return title().ends_with(" - Meniscus"); });
+}
+
+WindowPixels WindowTest::shown() {
+  return pixelsOf(display_, std::stoul(window_));
 }
 
 int WindowTest::quit() {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tests/support/process.h"
+#include "tests/view/window_pixels.h"
 
 namespace meniscus::test {
 
@@ -38,6 +39,8 @@ class WindowTest : public testing::Test {
  protected:
   void SetUp() override;
   void TearDown() override;
+  /// A display whose server gets these arguments, too.
+  void startServer(const std::vector<std::string>& arguments);
 
   /// Starts `meniscus view` in the test's folder and waits for its window.
   void open(const std::vector<std::string>& arguments);
@@ -46,6 +49,7 @@ class WindowTest : public testing::Test {
   void waitForTitle(const std::string& title);
   void waitForFile(const std::string& name);
   std::string title();
+  WindowPixels shown();  ///< what the window shows
   /// Ctrl Q, and the exit code; statistics of --stats are in stats.json.
   int quit();
 
@@ -67,6 +71,7 @@ class WindowTest : public testing::Test {
 
   TemporaryFolder folder_;
   std::string display_;
+  BackgroundProcess::Environment environment_;  // of the windows to come
   std::unique_ptr<BackgroundProcess> server_, viewer_;
   std::string window_;
 };
