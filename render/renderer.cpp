@@ -583,7 +583,8 @@ void Renderer::renderPicture(const View& view, const Lighting& lighting, const B
   MENISCUS_CHECK(settings.samples >= 1 && settings.samples <= kMaxSamples);
   MENISCUS_CHECK(!layout.layers.data() || layout.format == PixelFormat::rgbaFloat);
   Impl& r = *impl_;
-  r.prepare(settings.quadrics, settings.levelOfDetail, settings.surface);
+  // Data are of the quadrics themselves.
+  r.prepare(settings.quadrics, settings.levelOfDetail && !layout.layers.data(), settings.surface);
   Frame frame{view,
               settings,
               {lighting, background, settings.occlusion, settings.fog, settings.depthUnsharp, settings.lines,
