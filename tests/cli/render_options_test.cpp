@@ -367,6 +367,34 @@ TEST_F(RenderOption, assemblyAndReplicatePlaceCopies) {
   EXPECT_EQ(spheres("1a8o.cif.gz", {"--assembly", "1", "--replicate", "1x1x2"}), 4 * once);
 }
 
+// 67,000 atoms in a picture of 30 pixels.
+TEST_F(RenderOption, levelOfDetailKeepsWhatIsCovered) {
+  struct Drawn {
+    Picture picture;
+    std::string omissions;
+    double covered = 0;
+  };
+  const auto drawn = [&](std::vector<std::string> more) {
+    more.insert(more.end(), {"--assembly", "1", "--replicate", "5x4x3", "--size", "36x30", "--samples", "64",
+                             "--background", "transparent", "--quadrics", "tiles", "--stats", "stats.json"});
+    Drawn made{render("1a8o.cif.gz", more), {}};
+    made.omissions =
+        nlohmann::json::parse(readFile(folder_ / "stats.json"), nullptr, false)["omissions"].dump();
+    for (int y = 0; y < made.picture.height; ++y)
+      for (int x = 0; x < made.picture.width; ++x)
+        made.covered += static_cast<double>(made.picture.at(x, y)[3]);
+    return made;
+  };
+  const Drawn usual = drawn({}), all = drawn({"--level-of-detail", "off"}),
+              on = drawn({"--level-of-detail", "on"});
+  EXPECT_EQ(usual.picture.pixels, on.picture.pixels);
+  EXPECT_NE(usual.picture.pixels, all.picture.pixels);
+  EXPECT_NE(usual.omissions.find("balls stand for"), std::string::npos);
+  EXPECT_EQ(all.omissions.find("balls stand for"), std::string::npos);
+  EXPECT_GT(all.covered, 100);
+  EXPECT_NEAR(usual.covered / all.covered, 1, 0.02);
+}
+
 TEST_F(RenderOption, copiesShareMemoryAndLookAsEachByItself) {
   const std::vector<std::string> many{"--assembly", "1",       "--replicate", "5x4x3",
                                       "--size",     "400x300", "--channels",  "id,distance"};

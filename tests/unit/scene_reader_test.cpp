@@ -116,6 +116,7 @@ TEST_F(SceneReader, ourOwnSettingsWinOverTheNodes) {
   Json scene = structureScene("1ubq.pdb", {node("component", {{"selector", "protein"}}, {representation})});
   scene["root"] = withCustom(scene["root"], {{"size", "64x48"},
                                              {"samples", 4},
+                                             {"level_of_detail", false},
                                              {"shadows", "soft"},
                                              {"occlusion", true},
                                              {"outlines", {"silhouettes", "chains"}},
@@ -126,6 +127,7 @@ TEST_F(SceneReader, ourOwnSettingsWinOverTheNodes) {
   const Picture picture = std::move(read(scene).pictures.at(0));
   EXPECT_EQ(picture.options.size, (ImageSize{64, 48}));
   EXPECT_EQ(picture.options.samples, 4);
+  EXPECT_FALSE(picture.options.levelOfDetail);
   EXPECT_EQ(picture.options.shadows.mode, ShadowMode::soft);
   EXPECT_TRUE(picture.options.occlusion.on);
   EXPECT_TRUE(picture.options.lines.silhouettes);
