@@ -41,14 +41,14 @@ struct Means {
   std::size_t entries = 0;  // of the lists
 };
 
-// Over 64 rays for each pixel.
+// Over 16 rays for each pixel.
 Means meansOf(const Primitives& primitives, const View& view, bool thinned) {
   QuadricTiles caster;
   caster.setPrimitives(&primitives);
   Means means;
   double rays = 0;
-  for (int i = 0; i < 64; ++i) {
-    TileTarget target = targetOf(primitives, view, glm::vec2(glm::dvec2(i % 8 - 3.5, i / 8 - 3.5) / 8.0));
+  for (int i = 0; i < 16; ++i) {
+    TileTarget target = targetOf(primitives, view, glm::vec2(glm::dvec2(i % 4 - 1.5, i / 4 - 1.5) / 4.0));
     target.thinned = thinned;
     Planes planes;
     caster.cast(target, kAll, planes, Extent::whole);
