@@ -29,11 +29,7 @@ Tiles castBlock(const MetaballSource& source, const MetaballField& field, const 
                 Planes& planes, FieldCounts& counts) {
   const TileBlock& block = lists.block(b);
   thread_local std::vector<BallRecord> records;
-  records.resize(block.members.size());
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    if (i + kPrefetched < records.size()) source.prefetch(block.members[i + kPrefetched]);
-    source.record(block.members[i], records[i]);
-  }
+  makeRecords(source, block, records);
   TileRays rays = makeRays(target, LaneOrder::squares);
   TilePixels pixels;
   FieldTile tile{&field, source.largestSupport(), records, {}, lists.slack(), cut};

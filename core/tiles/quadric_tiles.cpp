@@ -33,11 +33,7 @@ void QuadricTiles::cast(const TileTarget& target, const PlaneChannels& channels,
   tbb::parallel_for(0, grid.blocks(), [&](int b) {
     const TileBlock& block = lists_.block(b);
     thread_local std::vector<QuadricRecord> records;
-    records.resize(block.members.size());
-    for (std::size_t i = 0; i < records.size(); ++i) {
-      if (i + kPrefetched < records.size()) source.prefetch(block.members[i + kPrefetched]);
-      source.record(block.members[i], records[i]);
-    }
+    makeRecords(source, block, records);
     TileRays rays = makeRays(target, LaneOrder::rows);
     TilePixels pixels;
     for (int t = 0; t < kTilesPerBlock; ++t) {

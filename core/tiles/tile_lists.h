@@ -52,6 +52,17 @@ struct TileBlock {
 /// How far ahead primitives are asked for.
 inline constexpr std::size_t kPrefetched = 8;
 
+/// A record for each member of a block, as source.record() makes them.
+template <typename Source, typename Record>
+void makeRecords(const Source& source, const TileBlock& block, std::vector<Record>& records) {
+  const std::vector<std::uint32_t>& members = block.members;
+  records.resize(members.size());
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    if (i + kPrefetched < members.size()) source.prefetch(members[i + kPrefetched]);
+    source.record(members[i], records[i]);
+  }
+}
+
 class TileLists {
  public:
   /// clusters: of the same primitives, or without any; cut: whether a tile's list ends where its front is
