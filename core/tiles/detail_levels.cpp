@@ -18,7 +18,9 @@ namespace meniscus::tiles {
 
 namespace {
 
-constexpr int kMostLevels = 30;
+// So many quadrics are looked at in a row, and a ball stands for as many at most.
+constexpr int kMostLevels = 12;
+constexpr std::size_t kPerTask = std::size_t{1} << kMostLevels;
 constexpr double kPi = 3.14159265358979323846;
 // Across the box of those that a ball stands for, where 8 touch each other [radii of a ball of their volume].
 constexpr double kMostApart = 5;
@@ -140,8 +142,7 @@ SpherePrimitive ballFor(std::span<const Rod> rods, const Box& box, Random& rando
 // make their box larger than `mostApart` across.
 std::vector<SpherePrimitive> ballsFor(const Quadrics& quadrics, std::span<const std::uint32_t> order,
                                       std::size_t perBall, double mostApart) {
-  const std::size_t perTask = std::max<std::size_t>(4096, perBall),
-                    tasks = (order.size() + perTask - 1) / perTask;
+  const std::size_t tasks = (order.size() + kPerTask - 1) / kPerTask;
   std::vector<std::vector<SpherePrimitive>> parts(tasks);
   tbb::parallel_for(std::size_t{0}, tasks, [&](std::size_t task) {
     Random random(task);
@@ -154,17 +155,19 @@ std::vector<SpherePrimitive> ballsFor(const Quadrics& quadrics, std::span<const 
         parts[task].push_back(ballFor(rods, box, random));
       }
       rods.clear();
-      box = {};
     };
     for (const std::uint32_t index :
-         order.subspan(task * perTask, std::min(perTask, order.size() - task * perTask))) {
+         order.subspan(task * kPerTask, std::min(kPerTask, order.size() - task * kPerTask))) {
       const Rod rod = rodOf(quadrics, index);
       Box grown = box;
       grown.add(rod);
-      if (rods.size() == perBall || static_cast<double>(glm::distance(grown.low, grown.high)) > mostApart)
+      if (rods.size() == perBall || static_cast<double>(glm::distance(grown.low, grown.high)) > mostApart) {
         close();
+        grown = {};
+        grown.add(rod);
+      }
       rods.push_back(rod);
-      box.add(rod);
+      box = grown;
     }
     close();
   });
@@ -226,9 +229,12 @@ DetailLevels::Level DetailLevels::level(int level) const {
 }
 
 const DetailLevels::Thinned& DetailLevels::thinned(int level) {
-  const auto [place, isNew] = thinned_.try_emplace(level);
-  Thinned& made = place->second;
-  if (!isNew) return made;
+  const auto known = thinned_.find(level);
+  return known != thinned_.end() ? known->second : thinned_.emplace(level, make(level)).first->second;
+}
+
+DetailLevels::Thinned DetailLevels::make(int level) const {
+  Thinned made;
   made.primitives.origin = primitives_.origin;
   const std::size_t perBall = std::size_t{1} << level;
   const double most = kMostApart * largest_ * std::exp2(level / 3.0);

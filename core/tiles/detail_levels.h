@@ -43,6 +43,7 @@ class DetailLevels {
   };
   int levelAt(double scale);  // [pixels for each Å]
   const Thinned& thinned(int level);
+  Thinned make(int level) const;
 
   const Primitives& primitives_;
   std::shared_ptr<const Clusters> clusters_;
