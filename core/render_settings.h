@@ -124,7 +124,7 @@ struct RenderSettings {
   DepthUnsharpSettings depthUnsharp;
   FogSettings fog;
   QuadricMethod quadrics = QuadricMethod::automatic;
-  bool levelOfDetail = true;  ///< of quadrics from tiles: core/tiles/detail_levels.h
+  bool levelOfDetail = true;  ///< of quadrics: core/tiles/detail_levels.h
   SurfaceSettings surface;
   TraceSettings trace;
   bool operator==(const RenderSettings&) const = default;

@@ -27,7 +27,7 @@
 #include "render/post/surface_reader.h"
 #include "render/post/traced_light.h"
 #include "render/post/translucent.h"
-#include "render/quadrics.h"
+#include "render/splat_quadrics.h"
 #include "render/surface_passes.h"
 #include "render/tile_quadrics.h"
 #include "render/tile_quadrics_glsl.h"
@@ -120,7 +120,7 @@ struct Renderer::Impl {
   RendererOptions options;
   ShaderLibrary shaders;
   TexturePool pool;
-  QuadricBuffers quadrics;
+  SplatQuadrics splatQuadrics;
   TileQuadrics tileQuadrics;
   GlslTileQuadrics glslTileQuadrics;
   QuadricChoice quadricChoice;
@@ -154,20 +154,27 @@ struct Renderer::Impl {
 
   explicit Impl(const RendererOptions& o)
       : options(o), shaders(o.shaderDir), effects(chooseEffects(o.effectsOnProcessor)) {
-    tileQuadrics.setPrimitives(primitives);
-    glslTileQuadrics.setPrimitives(primitives);
+    takePrimitives();
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
     glDisable(GL_DITHER);
     glDisable(GL_MULTISAMPLE);
   }
 
-  void prepare(QuadricMethod method, bool levelOfDetail, const SurfaceSettings& surface) {
+  // To the ways to draw quadrics.
+  void takePrimitives() {
+    splatQuadrics.setPrimitives(primitives, [this]() -> const Primitives& { return *apart(); });
+    tileQuadrics.setPrimitives(primitives);
+    glslTileQuadrics.setPrimitives(primitives);
+  }
+
+  void prepare(const View& view, QuadricMethod method, bool levelOfDetail, const SurfaceSettings& surface) {
     thinned = levelOfDetail;
     if (!options.shaderDir.empty()) shaders.reloadIfChanged();
     stats.omissions.clear();  // of an earlier picture
     Stopwatch watch(stats.uploadMs);
     quadricChoice = chooseQuadrics(method);
-    if (quadricChoice.method == QuadricMethod::splat) quadrics.upload(*apart());
+    if (quadricChoice.method == QuadricMethod::splat)
+      splatQuadrics.upload(targetOf(view, {0, 0, view.size.width, view.size.height}, {0, 0}));
     triangles.upload(primitives->mesh);
     surfaces.prepare(primitives, surface);
     if (!viewUniforms.object) viewUniforms = gl::Buffer::updatable(sizeof(f32::ViewBlock));
@@ -199,7 +206,7 @@ struct Renderer::Impl {
   void addScene(FrameGraph& graph, const View& view, const Tile& tile, glm::vec2 sampleShift,
                 const GBufferRefs& gbuffer, Surfaces drawn, const std::string& prefix = {}) {
     if (quadricChoice.method == QuadricMethod::splat) {
-      addQuadrics(graph, quadrics, shaders, gbuffer, prefix);
+      splatQuadrics.add(graph, shaders, targetOf(view, tile, sampleShift), gbuffer, prefix);
     } else if (primitives->noQuadrics()) {
       graph.leaveOut("pass " + prefix + "tiles", "the scene has no quadrics");
     } else if (quadricChoice.method == QuadricMethod::tiles) {
@@ -356,10 +363,8 @@ void Renderer::setPrimitives(std::shared_ptr<const Primitives> primitives) {
   impl_->withoutSurfaces.reset();
   impl_->surfaces.takeStats(impl_->stats.surfaces);
   impl_->surfaces.clear();
-  impl_->quadrics.clear();
   impl_->triangles.clear();
-  impl_->tileQuadrics.setPrimitives(impl_->primitives);
-  impl_->glslTileQuadrics.setPrimitives(impl_->primitives);
+  impl_->takePrimitives();
   impl_->tracedLight.setPrimitives(nullptr);
   impl_->occlusionBuffers.clear();
   impl_->silhouetteUniforms.clearGroups();
@@ -584,7 +589,7 @@ void Renderer::renderPicture(const View& view, const Lighting& lighting, const B
   MENISCUS_CHECK(!layout.layers.data() || layout.format == PixelFormat::rgbaFloat);
   Impl& r = *impl_;
   // Data are of the quadrics themselves.
-  r.prepare(settings.quadrics, settings.levelOfDetail && !layout.layers.data(), settings.surface);
+  r.prepare(view, settings.quadrics, settings.levelOfDetail && !layout.layers.data(), settings.surface);
   Frame frame{view,
               settings,
               {lighting, background, settings.occlusion, settings.fog, settings.depthUnsharp, settings.lines,
@@ -680,7 +685,7 @@ void Renderer::renderPicture(const View& view, const Lighting& lighting, const B
 HitImage Renderer::renderHits(const View& view, HitChannels channels, const SurfaceSettings& surface,
                               QuadricMethod quadrics) {
   Impl& r = *impl_;
-  r.prepare(quadrics, false, surface);
+  r.prepare(view, quadrics, false, surface);
   const int width = view.size.width, height = view.size.height;
   const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   HitImage image;
@@ -727,7 +732,7 @@ HitImage Renderer::renderHits(const View& view, HitChannels channels, const Surf
 SurfaceLayerImage Renderer::renderLayers(const View& view, const SurfaceSettings& surface) {
   MENISCUS_CHECK(surface.translucent());
   Impl& r = *impl_;
-  r.prepare(QuadricMethod::automatic, false, surface);
+  r.prepare(view, QuadricMethod::automatic, false, surface);
   const Tile tile{0, 0, view.size.width, view.size.height};
   const std::size_t pixels = static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
   r.setView(view, tile, {0, 0});
@@ -773,7 +778,7 @@ RenderStats Renderer::stats() const {
   RenderStats stats = impl_->stats;
   stats.programs = impl_->shaders.compiled();
   stats.compileMs = impl_->shaders.compileMs() - impl_->forgottenCompileMs;
-  stats.buffers = impl_->quadrics.buffers();
+  stats.buffers = impl_->splatQuadrics.buffers();
   for (ResourceStats& buffer : impl_->glslTileQuadrics.buffers()) stats.buffers.push_back(std::move(buffer));
   for (ResourceStats& buffer : impl_->triangles.buffers()) stats.buffers.push_back(std::move(buffer));
   for (ResourceStats& buffer : impl_->surfaces.buffers()) stats.buffers.push_back(std::move(buffer));

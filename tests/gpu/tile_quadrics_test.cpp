@@ -98,13 +98,13 @@ TEST_F(TileQuadricsTest, NeedNoBufferAndNoProgram) {
   }));
 }
 
-std::shared_ptr<const Primitives> copiesOfAChain(std::uint32_t copies) {
+std::shared_ptr<const Primitives> copiesOfAChain(std::uint32_t copies, double halfBox = 25) {
   auto scene = std::make_shared<Primitives>();
   QuadricUnit& unit = scene->units.emplace_back();
   static_cast<Quadrics&>(unit) = *test::randomChain(300, 4);
   test::Random random(9);
   for (std::uint32_t i = 0; i < copies; ++i)
-    unit.copies.push_back({{glm::mat3_cast(random.rotation()), random.inBox(25)}, 300 * i});
+    unit.copies.push_back({{glm::mat3_cast(random.rotation()), random.inBox(halfBox)}, 300 * i});
   return scene;
 }
 
@@ -142,6 +142,53 @@ TEST_F(TileQuadricsTest, CopiesLookAsEachByItself) {
   settings.occlusion.on = false;
   settings.trace.shadows = 1;
   EXPECT_EQ(drawn(3, {64, 48}, settings, false), drawn(3, {64, 48}, settings, true));
+}
+
+// 27,300 atoms in a picture of 24 pixels, in copies and by themselves.
+TEST_F(TileQuadricsTest, SmallOnesAreTheSameBallsHoweverDrawn) {
+  auto scene = std::make_shared<Primitives>(*copiesOfAChain(90, 100));
+  static_cast<Quadrics&>(*scene) = *test::randomSpheres(300, 11);
+  scene->units.front().cylinders.clear();  // as long as the chain
+  const auto drawn = [&](ImageSize size, const RenderSettings& settings, RenderStats& stats) {
+    Renderer renderer;
+    renderer.setPrimitives(scene);
+    test::MemorySink sink;
+    renderer.renderPicture(test::viewOf(copiesApart(*scene), size), Lighting{}, {}, settings,
+                           PixelFormat::rgba8, sink);
+    stats = renderer.stats();
+    return sink.bytes;
+  };
+  const auto thinned = [](const RenderStats& stats) {
+    return std::count_if(stats.omissions.begin(), stats.omissions.end(), [](const OmissionStats& o) {
+      return o.reason.find("balls stand for") != std::string::npos;
+    });
+  };
+  RenderSettings settings = test::withSamples(4, QuadricMethod::splat);
+  settings.shadows.mode = ShadowMode::hard;
+  RenderStats stats, others;
+  const std::vector<std::byte> splatted = drawn({24, 18}, settings, stats);
+  EXPECT_EQ(thinned(stats), 2) << "the picture's and the shadow map's";
+  for (const ResourceStats& buffer : stats.buffers)
+    EXPECT_EQ(buffer.name, "balls that stand for others") << buffer.bytes;
+  for (const QuadricMethod method : {QuadricMethod::tiles, QuadricMethod::tilesGlsl}) {
+    settings.quadrics = method;
+    const std::vector<std::byte> cast = drawn({24, 18}, settings, others);
+    EXPECT_EQ(thinned(others), 2);
+    ASSERT_EQ(cast.size(), splatted.size());
+    int most = 0;
+    for (std::size_t i = 0; i < cast.size(); ++i)
+      most = std::max(most, std::abs(std::to_integer<int>(cast[i]) - std::to_integer<int>(splatted[i])));
+    EXPECT_LE(most, 2);
+  }
+
+  settings.quadrics = QuadricMethod::splat;
+  settings.levelOfDetail = false;
+  EXPECT_NE(drawn({24, 18}, settings, others), splatted);
+  EXPECT_EQ(thinned(others), 0);
+  settings.levelOfDetail = true;
+  drawn({800, 600}, settings, others);
+  EXPECT_EQ(thinned(others), 0) << "too large";
+  EXPECT_EQ(others.buffers.front().name, "spheres");
 }
 
 TEST_F(TileQuadricsTest, AutomaticChoosesByDevice) {

@@ -1,0 +1,86 @@
+#include "render/splat_quadrics.h"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+#include <utility>
+
+#include "core/tiles/quadric_source.h"
+#include "render/tile_quadrics.h"
+
+namespace meniscus {
+
+namespace {
+
+// No larger than the ball around any quadric.
+double largestRadius(const Primitives& primitives) {
+  float largest = 0;
+  tiles::forSets(primitives, [&](const Quadrics& quadrics, std::span<const QuadricCopy>) {
+    for (const SpherePrimitive& s : quadrics.spheres) largest = std::max(largest, s.radius);
+    for (const CylinderPrimitive& c : quadrics.cylinders)
+      largest = std::max({largest, c.radius, 0.5f * glm::distance(c.a, c.b)});
+    for (const EllipsoidPrimitive& e : quadrics.ellipsoids) largest = std::max(largest, glm::length(e.axisA));
+  });
+  return static_cast<double>(largest);
+}
+
+}  // namespace
+
+void SplatQuadrics::setPrimitives(std::shared_ptr<const Primitives> primitives, Apart apart) {
+  primitives_ = std::move(primitives);
+  apart_ = std::move(apart);
+  extent_.reset();
+  levels_ = nullptr;
+  uploaded_.clear();
+}
+
+// Even where the scene is farthest away: most pictures need no clusters to know that.
+bool SplatQuadrics::tooLargeToThin(const tiles::TileTarget& target) {
+  if (!extent_) extent_ = {primitives_->bounds(), largestRadius(*primitives_)};
+  const View& view = target.view;
+  double across = view.pixelSize;  // a pixel [Å]
+  if (view.projection == Projection::perspective) {
+    const double z = (view.rotation * (extent_->bounds.center - view.pivot)).z;
+    across *= std::max(view.distance - z + extent_->bounds.radius, 0.0);
+  }
+  return extent_->largest == 0 || extent_->largest > tiles::kThinnedRadius * across;
+}
+
+int SplatQuadrics::levelFor(const tiles::TileTarget& target) {
+  if (!target.thinned || tooLargeToThin(target)) return 0;
+  if (!levels_) levels_ = tiles::levelsOf(*primitives_);
+  return levels_->levelFor(target);
+}
+
+const QuadricBuffers& SplatQuadrics::upload(const tiles::TileTarget& target) {
+  const int level = levelFor(target);
+  const auto known = uploaded_.find(level);
+  if (known != uploaded_.end()) return known->second;
+  QuadricBuffers buffers;
+  if (level == 0) {
+    buffers.upload(apart_());
+  } else {
+    const Primitives& balls = *levels_->level(level).primitives;
+    buffers.upload(balls.units.empty() ? balls : copiesApart(balls));
+  }
+  return uploaded_.emplace(level, std::move(buffers)).first->second;
+}
+
+void SplatQuadrics::add(FrameGraph& graph, ShaderLibrary& shaders, const tiles::TileTarget& target,
+                        const GBufferRefs& gbuffer, const std::string& prefix) {
+  const QuadricBuffers& buffers = upload(target);
+  if (levels_) tellDetail(graph, *levels_, target, prefix);
+  addQuadrics(graph, buffers, shaders, gbuffer, prefix);
+}
+
+std::vector<ResourceStats> SplatQuadrics::buffers() const {
+  std::vector<ResourceStats> out;
+  for (const auto& [level, buffers] : uploaded_) {
+    for (ResourceStats& buffer : buffers.buffers()) {
+      if (level > 0) buffer.name = "balls that stand for others";
+      out.push_back(std::move(buffer));
+    }
+  }
+  return out;
+}
+
+}  // namespace meniscus
