@@ -79,8 +79,8 @@ void turn(View& view) {
   view.rotation = glm::dmat3(glm::rotate(glm::dmat4(view.rotation), 1e-4, glm::dvec3(0, 1, 0)));
 }
 
-RendererOptions optionsOf(bool timePasses) {
-  return {.shaderDir = {}, .timePasses = timePasses, .maxTileSize = 0, .effectsOnProcessor = false};
+RendererOptions optionsOf(bool timePasses, bool onProcessor) {
+  return {.shaderDir = {}, .timePasses = timePasses, .maxTileSize = 0, .effectsOnProcessor = onProcessor};
 }
 
 // Layout of DirectUniforms in bench/shaders/direct.glsl.
@@ -160,8 +160,10 @@ class DirectRenderer {
   ShadowMap drawMap(FrameGraph& graph, const View& view, const Lighting& lighting,
                     const ShadowSettings& shadows) {
     const BoundingSphere bounds = primitives_.bounds();
+    const double texel =
+        shadowTexelSize(pixelFootprint(view, bounds), shadows.penumbra, primitives_.thinnestRadius());
     const View light =
-        makeLightView(view, lighting.key, bounds, pixelFootprint(view, bounds), 8192, shadows.penumbra);
+        makeLightView(view, lighting.key, bounds, texel, largestShadowMap(view.size), shadows.penumbra);
     setView(light);
     GBufferRefs map;
     map.depth =
@@ -206,43 +208,49 @@ void measure(const Source& source, int repetitions) {
   const BenchScene scene = loadScene(source.scene, kSize);
   const Lighting lighting;
   DirectRenderer direct(*scene.primitives);
-  Renderer deferred(optionsOf(false));
+  Renderer byShaders(optionsOf(false, false)), byProcessor(optionsOf(false, true));
+  Renderer* const deferred[] = {&byShaders, &byProcessor};
+  constexpr const char* kEffects[] = {"shaders", "processor"};
   View view = scene.view;
-  deferred.setPrimitives(scene.primitives);
-  const auto drawDeferred = [&](const Kind& kind, RowSink& sink) {
-    deferred.renderPicture(view, lighting, kNothing, settingsOf(kind.shadows, kind.lines), PixelFormat::rgba8,
+  for (Renderer* renderer : deferred) renderer->setPrimitives(scene.primitives);
+  const auto draw = [&](Renderer& renderer, const Kind& kind, RowSink& sink) {
+    renderer.renderPicture(view, lighting, kNothing, settingsOf(kind.shadows, kind.lines), PixelFormat::rgba8,
                            sink);
   };
   constexpr std::size_t kCount = std::size(kKinds);
-  std::vector<double> directMs[kCount], deferredMs[kCount];
-  double difference[kCount] = {};
+  std::vector<double> directMs[kCount], deferredMs[kCount][2];
+  double difference[kCount][2] = {};
   double directTime = 0;
   for (int repetition = -1; repetition < repetitions; ++repetition) {  // the first warms up and compares
     for (std::size_t k = 0; k < kCount; ++k) {
       turn(view);
       if (!kKinds[k].lines) directTime = processorMs([&] { direct.draw(view, lighting, kKinds[k].shadows); });
-      if (repetition < 0) {
-        ByteSink sink;
-        drawDeferred(kKinds[k], sink);
-        difference[k] = differenceOf(sink.bytes, direct.pixels());
-        continue;
+      if (repetition >= 0) directMs[k].push_back(directTime);
+      for (std::size_t e = 0; e < std::size(deferred); ++e) {
+        if (repetition < 0) {
+          ByteSink sink;
+          draw(*deferred[e], kKinds[k], sink);
+          difference[k][e] = differenceOf(sink.bytes, direct.pixels());
+          continue;
+        }
+        NullSink sink;
+        deferredMs[k][e].push_back(processorMs([&] { draw(*deferred[e], kKinds[k], sink); }));
       }
-      NullSink sink;
-      directMs[k].push_back(directTime);
-      deferredMs[k].push_back(processorMs([&] { drawDeferred(kKinds[k], sink); }));
     }
   }
   for (std::size_t k = 0; k < kCount; ++k) {
-    const double a = median(directMs[k]), b = median(deferredMs[k]);
-    fmt::print("table,\"{}\",{},{},\"{}\",{:.1f},{:.1f},{:.2f},{:.2f},{}\n", source.name,
-               scene.primitives->spheres.size(), scene.primitives->cylinders.size(), kKinds[k].name, a, b,
-               a / b, source.paperRatio[kKinds[k].shadows.mode != ShadowMode::off],
-               kKinds[k].lines ? std::string() : fmt::format("{:.5f}", difference[k]));
-    std::fflush(stdout);
+    for (std::size_t e = 0; e < std::size(deferred); ++e) {
+      const double a = median(directMs[k]), b = median(deferredMs[k][e]);
+      fmt::print("table,\"{}\",{},{},\"{}\",{},{:.1f},{:.1f},{:.2f},{:.2f},{}\n", source.name,
+                 scene.primitives->spheres.size(), scene.primitives->cylinders.size(), kKinds[k].name,
+                 kEffects[e], a, b, a / b, source.paperRatio[kKinds[k].shadows.mode != ShadowMode::off],
+                 kKinds[k].lines ? std::string() : fmt::format("{:.5f}", difference[k][e]));
+      std::fflush(stdout);
+    }
   }
 
   // §5: shares of the passes. The probes alone: as many samples as there are probes.
-  Renderer timed(optionsOf(true));
+  Renderer timed(optionsOf(true, false));
   timed.setPrimitives(scene.primitives);
   const auto passMs = [&](const ShadowSettings& shadows) {
     std::map<std::string, double> before, spent;
@@ -276,7 +284,8 @@ void measure(const Source& source, int repetitions) {
   double total = 0;
   for (const auto& [part, ms] : parts) total += median(ms);
   for (const auto& [part, ms] : parts) {
-    fmt::print("share,\"{}\",,,{},,{:.1f},{:.3f},,\n", source.name, part, median(ms), median(ms) / total);
+    fmt::print("share,\"{}\",,,{},shaders,,{:.1f},{:.3f},,\n", source.name, part, median(ms),
+               median(ms) / total);
   }
   std::fflush(stdout);
 }
@@ -290,7 +299,8 @@ int main(int argc, char** argv) {
     const int repetitions = argc > 1 ? std::max(1, std::atoi(argv[1])) : 5;
     const auto context = Context::create(Backend::automatic);
     fmt::print(
-        "what,scene,spheres,cylinders,kind,direct_ms,deferred_ms,ratio_or_share,paper_ratio,difference\n");
+        "what,scene,spheres,cylinders,kind,effects_by,direct_ms,deferred_ms,ratio_or_share,paper_ratio,"
+        "difference\n");
     for (const bench::Source& source : bench::kSources) bench::measure(source, repetitions);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "direct_vs_deferred: %s\n", error.what());
