@@ -29,6 +29,7 @@ struct EncodeTask {
   float perSample;
   glm::vec4 backdrop;
   PixelFormat format;
+  const std::byte* nothing;  // a row of backdrop as it is stored, once it is known
 };
 /// A row's light: of each channel.
 struct LightRow {
@@ -68,13 +69,22 @@ HWY_INLINE void storeSome(V v, std::size_t count, float* to) {
   hn::Store(v, F(), values);
   std::memcpy(to, values, 4 * count);
 }
+constexpr float kUnorm16 = 1.0f / 65535.0f;
+HWY_INLINE V loadShares(const std::uint16_t* from, std::size_t count) {
+  const hn::Rebind<std::uint16_t, F> u16;
+  alignas(64) std::uint16_t values[kMostLanes] = {};
+  if (count < laneCount()) {
+    std::copy_n(from, count, values);
+    from = values;
+  }
+  return hn::ConvertTo(F(), hn::PromoteTo(I(), hn::LoadU(u16, from))) * all(kUnorm16);
+}
 template <typename T>
-HWY_INLINE V loadShares(const T* from, std::size_t count, std::size_t stride, float unit) {
+HWY_INLINE V loadStrided(const T* from, std::size_t count, std::size_t stride, float unit) {
   alignas(64) float values[kMostLanes] = {};
   for (std::size_t k = 0; k < count; ++k) values[k] = static_cast<float>(from[k * stride]);
   return hn::Load(F(), values) * all(unit);
 }
-constexpr float kUnorm16 = 1.0f / 65535.0f;
 
 // lit() of include/lighting.glsl.
 HWY_INLINE Vec3 lit(const ShadeBlock& b, const Vec3& albedo, const Vec3& normal, const Vec3& toEye, V visible,
@@ -120,24 +130,23 @@ HWY_INLINE Light surfaceLight(const ShadeTask& task, std::size_t at, int x, int 
     toEye = normalized({hn::Neg(slopes.x), hn::Neg(slopes.y), one});
   }
   V visible = one, sky = one;
-  if (!light.visibility.empty()) visible = loadShares(light.visibility.data() + at, count, 1, kUnorm16);
+  if (!light.visibility.empty()) visible = loadShares(light.visibility.data() + at, count);
   if (!light.occlusion.empty()) {
     std::uint16_t halves[2 * kMostLanes] = {};
     std::memcpy(halves, light.occlusion.data() + at, 4 * count);
-    const V hidden = loadShares(halves, count, 2, kUnorm16),
-            whole = loadShares(halves + 1, count, 2, kUnorm16);
+    const V hidden = loadStrided(halves, count, 2, kUnorm16),
+            whole = loadStrided(halves + 1, count, 2, kUnorm16);
     sky = one - all(b.ambient.w) * hn::Min(hidden / hn::Max(whole, all(1e-5f)), one);
   }
   Light l{lit(b, linearAlbedo(task, at), normalsAt(planes, at), toEye, visible, sky), one};
   if (!light.traced.empty()) {
     const float* traced = light.traced.data() + 4 * at;
-    const V left = loadShares(traced + 3, count, 4, 1);
-    l.color = add(scale(l.color, left), {loadShares(traced, count, 4, 1), loadShares(traced + 1, count, 4, 1),
-                                         loadShares(traced + 2, count, 4, 1)});
+    const auto channel = [&](std::size_t c) { return loadStrided(traced + c, count, 4, 1); };
+    l.color = add(scale(l.color, channel(3)), {channel(0), channel(1), channel(2)});
   }
   if (!light.difference.empty()) {
     const V shift =
-        hn::Min(all(b.unsharp.x) * loadShares(light.difference.data() + at, count, 1, 1), all(b.unsharp.y));
+        hn::Min(all(b.unsharp.x) * loadSome(light.difference.data() + at, count), all(b.unsharp.y));
     const auto shifted = [&](V c) {
       const V root = hn::Max(hn::Sqrt(c) + shift, zero);
       return root * root;
@@ -153,7 +162,7 @@ HWY_INLINE Light surfaceLight(const ShadeTask& task, std::size_t at, int x, int 
     l = {scale(l.color, through), l.alpha * through};
   }
   if (!light.lines.empty()) {
-    const V share = all(b.line.w) * loadShares(light.lines.data() + at, count, 1, kUnorm16);
+    const V share = all(b.line.w) * loadShares(light.lines.data() + at, count);
     l.color = {mixed(l.color.x, all(b.line.x) * l.alpha, share),
                mixed(l.color.y, all(b.line.y) * l.alpha, share),
                mixed(l.color.z, all(b.line.z) * l.alpha, share)};
@@ -184,7 +193,7 @@ void shadeRow(const ShadeTask& task, int y, bool add, const LightRow& out) {
     }
     if (!task.light->labels.empty()) {
       const std::uint16_t* label = task.light->labels.data() + 4 * at;
-      const auto channel = [&](std::size_t c) { return loadShares(label + c, count, 4, kUnorm16); };
+      const auto channel = [&](std::size_t c) { return loadStrided(label + c, count, 4, kUnorm16); };
       const V alpha = channel(3), left = all(1.0f) - alpha;
       l = {meniscus::tiles::HWY_NAMESPACE::add({channel(0), channel(1), channel(2)}, scale(l.color, left)),
            alpha + left * l.alpha};
@@ -213,14 +222,19 @@ void encodeRow(const EncodeTask& task, const LitRow& row, std::size_t count, std
   const V zero = hn::Zero(f), one = all(1.0f), per = all(task.perSample);
   const std::size_t lanes = laneCount();
   const float most = task.format == PixelFormat::rgba8 ? 255.0f : 65535.0f;
+  const std::size_t pixelBytes = bytesPerPixel(task.format);
   for (std::size_t x = 0; x < count; x += lanes) {
     const std::size_t here = std::min(lanes, count - x);
     const auto load = [&](const float* from) { return loadSome(from + x, here) * per; };
+    const Vec3 color{load(row.red), load(row.green), load(row.blue)};
     const V a = load(row.alpha), left = one - a;
+    if (task.nothing != nullptr &&
+        hn::AllTrue(f, hn::Max(hn::Max(color.x, color.y), hn::Max(color.z, a)) <= zero)) {
+      std::memcpy(out + pixelBytes * x, task.nothing, pixelBytes * here);
+      continue;
+    }
     const V alpha = a + left * all(task.backdrop.w);
-    const Vec3 over{load(row.red) + left * all(task.backdrop.x),
-                    load(row.green) + left * all(task.backdrop.y),
-                    load(row.blue) + left * all(task.backdrop.z)};
+    const Vec3 over = add(color, scale(xyz(task.backdrop), left));
     if (task.format == PixelFormat::rgbaFloat) {
       alignas(64) float values[4][kMostLanes];
       hn::Store(over.x, f, values[0]);
@@ -284,7 +298,7 @@ class RowWriter {
   // litX, litWidth: of the target, where there may be light.
   RowWriter(const PictureRows& out, int samples, const glm::vec4& backdrop, int litX, int litWidth)
       : out_(out),
-        task_{1 / static_cast<float>(samples), backdrop, out.format},
+        task_{1 / static_cast<float>(samples), backdrop, out.format, nullptr},
         pixelBytes_(bytesPerPixel(out.format)),
         first_(std::clamp(litX, out.x, out.x + out.width)),
         end_(std::clamp(litX + litWidth, first_, out.x + out.width)),
@@ -294,6 +308,7 @@ class RowWriter {
     const float* const zeros = nothing.data();
     HWY_DYNAMIC_DISPATCH(encodeRow)
     (task_, LitRow{zeros, zeros, zeros, zeros}, nothing.size(), empty_.data());
+    task_.nothing = empty_.data();
   }
   // y: of the target.
   void writeBackdrop(int y) const { std::memcpy(rowOf(y), empty_.data(), empty_.size()); }

@@ -7,6 +7,8 @@
 #define MENISCUS_EFFECTS_SURFACE_LANES_INL
 #endif
 
+#include <algorithm>
+
 #include "core/effects/surface_planes.h"
 #include "core/tiles/lanes.inl"
 
@@ -75,9 +77,15 @@ HWY_INLINE Surfaces surfacesAt(const SurfacePlanes& planes, std::size_t at, int 
 
 // Stores shares as R16 does, of the first `count` lanes.
 HWY_INLINE void storeShares(V share, std::size_t count, std::uint16_t* out) {
-  alignas(64) std::int32_t stored[kMostLanes] = {};
-  hn::Store(hn::ConvertTo(I(), share * all(65535.0f) + all(0.5f)), I(), stored);
-  for (std::size_t k = 0; k < count; ++k) out[k] = static_cast<std::uint16_t>(stored[k]);
+  const hn::Rebind<std::uint16_t, F> u16;
+  const auto stored = hn::DemoteTo(u16, hn::ConvertTo(I(), share * all(65535.0f) + all(0.5f)));
+  if (count == laneCount()) {
+    hn::StoreU(stored, u16, out);
+    return;
+  }
+  alignas(64) std::uint16_t values[kMostLanes];
+  hn::Store(stored, u16, values);
+  std::copy_n(values, count, out);
 }
 
 }  // namespace meniscus::effects::HWY_NAMESPACE
