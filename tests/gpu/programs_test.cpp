@@ -65,6 +65,14 @@ ShaderFlags flagsOf(const ShaderLibrary& library, const ProgramName& program) {
 
 class Programs : public test::GlTest {};
 
+// Nearly all of it is the driver's work, at which sanitizers do not look: with them each flag of a program is
+// set once and left out once at least, without them in every combination with the others.
+#ifdef __SANITIZE_ADDRESS__
+constexpr bool kEverySet = false;
+#else
+constexpr bool kEverySet = true;
+#endif
+
 TEST_F(Programs, EveryProgramLinksWithEverySetOfItsFlags) {
   ShaderLibrary library{{}};
   std::size_t expected = 0;
@@ -73,7 +81,9 @@ TEST_F(Programs, EveryProgramLinksWithEverySetOfItsFlags) {
   for (const ProgramName& program : programs) {
     const ShaderFlags flags = flagsOf(library, program);
     const std::vector<std::string> names(flags.begin(), flags.end());
-    for (unsigned set = 0; set < 1u << names.size(); ++set) {
+    const unsigned all = (1u << names.size()) - 1;
+    for (unsigned set = 0; set <= all; ++set) {
+      if (!kEverySet && set != 0 && set != all) continue;
       ShaderFlags chosen;
       for (std::size_t i = 0; i < names.size(); ++i) {
         if ((set >> i & 1u) != 0) chosen.insert(names[i]);
