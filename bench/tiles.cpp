@@ -337,13 +337,13 @@ int main(int argc, char** argv) {
     }
     const auto context = Context::create(Backend::automatic);
     if (argc > 2 && std::string_view(argv[2]) == "frames") {
-      bench::measureFrames(58000, repetitions);
+      for (const int atoms : {58000, 1000000}) bench::measureFrames(atoms, repetitions);
       return 0;
     }
     if (argc <= 2) {
       for (const int atoms : {58000, 300000, 1000000}) bench::measure(atoms, repetitions);
       bench::measureWidths(58000, repetitions);
-      bench::measureFrames(58000, repetitions);
+      for (const int atoms : {58000, 1000000}) bench::measureFrames(atoms, repetitions);
     }
     for (int i = 2; i < argc; ++i) bench::measure(std::atoi(argv[i]), repetitions);
     return 0;

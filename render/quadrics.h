@@ -36,8 +36,8 @@ class QuadricBuffers {
 };
 
 /// Adds a pass for each kind of quadric there is. The view's uniform block must be bound
-/// (render/renderer.cpp). Channels of `gbuffer` that are not valid are not written; `prefix` goes before the
-/// passes' names.
+/// (render/renderer_frame.cpp). Channels of `gbuffer` that are not valid are not written; `prefix` goes
+/// before the passes' names.
 void addQuadrics(FrameGraph& graph, const QuadricBuffers& quadrics, ShaderLibrary& shaders,
                  const GBufferRefs& gbuffer, const std::string& prefix = {});
 

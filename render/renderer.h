@@ -1,5 +1,5 @@
 #pragma once
-// Draws Primitives as seen from a View. buildFrame() in renderer.cpp reads as the list of passes.
+// Draws Primitives as seen from a View. buildFrame() in renderer_frame.cpp reads as the list of passes.
 
 #include <array>
 #include <cstdint>

@@ -29,7 +29,7 @@ struct SurfaceLayerRefs {
   bool valid() const { return of[0].valid(); }
 };
 
-/// What one sample of one tile is drawn with. The view's uniform block is bound (render/renderer.cpp).
+/// What one sample of one tile is drawn with. The view's uniform block is bound (render/renderer_frame.cpp).
 struct SurfaceTarget {
   const View& view;
   glm::dvec3 origin;      ///< Primitives::origin: what the balls' centres are relative to

@@ -31,9 +31,9 @@ class TriangleBuffers {
 };
 
 /// Adds the pass, or notes that the scene has no triangles. The view's uniform block must be bound
-/// (render/renderer.cpp). `prefix` goes before the pass's name. Into a shadow map go the sides that face away
-/// from the light: the mesh is closed, so that they cast the same shadow, and none onto the sides in front of
-/// them.
+/// (render/renderer_frame.cpp). `prefix` goes before the pass's name. Into a shadow map go the sides that
+/// face away from the light: the mesh is closed, so that they cast the same shadow, and none onto the sides
+/// in front of them.
 void addTriangles(FrameGraph& graph, const TriangleBuffers& triangles, ShaderLibrary& shaders,
                   const GBufferRefs& gbuffer, const std::string& prefix = {});
 
