@@ -207,6 +207,7 @@ void effectsPanel(Viewer& viewer, const RenderOptions& o) {
               kUnsharp[static_cast<std::size_t>(o.depthUnsharp.mode)]);
   optionSlider(document, "fog", "fog", o.fog.strength, 0, 1, "%.2f");
   optionSlider(document, "rays a pixel", "samples", o.samples, 1, 64);
+  optionCheck(document, "level of detail", "level-of-detail", o.levelOfDetail, "on", "off");
   std::string background = document.value("background").value_or("white");
   if (ImGui::BeginCombo("background", background.c_str())) {
     for (const char* word : {"white", "black", "transparent"})

@@ -74,7 +74,7 @@ HWY_INLINE V loadShares(const std::uint16_t* from, std::size_t count) {
   const hn::Rebind<std::uint16_t, F> u16;
   alignas(64) std::uint16_t values[kMostLanes] = {};
   if (count < laneCount()) {
-    std::copy_n(from, count, values);
+    std::copy_n(from, std::min(count, laneCount()), values);
     from = values;
   }
   return hn::ConvertTo(F(), hn::PromoteTo(I(), hn::LoadU(u16, from))) * all(kUnorm16);

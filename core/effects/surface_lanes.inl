@@ -85,7 +85,7 @@ HWY_INLINE void storeShares(V share, std::size_t count, std::uint16_t* out) {
   }
   alignas(64) std::uint16_t values[kMostLanes];
   hn::Store(stored, u16, values);
-  std::copy_n(values, count, out);
+  std::copy_n(values, std::min(count, laneCount()), out);
 }
 
 }  // namespace meniscus::effects::HWY_NAMESPACE
