@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <glm/geometric.hpp>
+#include <span>
 #include <utility>
 
 #include "core/tiles/quadric_source.h"
@@ -11,7 +12,7 @@ namespace meniscus {
 
 namespace {
 
-// No larger than the ball around any quadric.
+// Of a quadric, or a little less: the ball around it has this radius at least.
 double largestRadius(const Primitives& primitives) {
   float largest = 0;
   tiles::forSets(primitives, [&](const Quadrics& quadrics, std::span<const QuadricCopy>) {
@@ -28,21 +29,18 @@ double largestRadius(const Primitives& primitives) {
 void SplatQuadrics::setPrimitives(std::shared_ptr<const Primitives> primitives, Apart apart) {
   primitives_ = std::move(primitives);
   apart_ = std::move(apart);
-  extent_.reset();
+  largest_.reset();
   levels_ = nullptr;
   uploaded_.clear();
 }
 
-// Even where the scene is farthest away: most pictures need no clusters to know that.
+// Even at the far plane: most pictures need no clusters to know that.
 bool SplatQuadrics::tooLargeToThin(const tiles::TileTarget& target) {
-  if (!extent_) extent_ = {primitives_->bounds(), largestRadius(*primitives_)};
+  if (!largest_) largest_ = largestRadius(*primitives_);
   const View& view = target.view;
-  double across = view.pixelSize;  // a pixel [Å]
-  if (view.projection == Projection::perspective) {
-    const double z = (view.rotation * (extent_->bounds.center - view.pivot)).z;
-    across *= std::max(view.distance - z + extent_->bounds.radius, 0.0);
-  }
-  return extent_->largest == 0 || extent_->largest > tiles::kThinnedRadius * across;
+  const bool perspective = view.projection == Projection::perspective;
+  const double across = view.pixelSize * (perspective ? view.distance - view.farZ : 1);  // a pixel [Å]
+  return *largest_ == 0 || *largest_ > tiles::kThinnedRadius * across;
 }
 
 int SplatQuadrics::levelFor(const tiles::TileTarget& target) {

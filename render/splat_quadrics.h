@@ -30,16 +30,12 @@ class SplatQuadrics {
   std::vector<ResourceStats> buffers() const;
 
  private:
-  struct Extent {
-    BoundingSphere bounds;
-    double largest;  // radius of a quadric [Å]
-  };
   bool tooLargeToThin(const tiles::TileTarget& target);
   int levelFor(const tiles::TileTarget& target);
 
   std::shared_ptr<const Primitives> primitives_;
   Apart apart_;
-  std::optional<Extent> extent_;                 // found out when it is wanted first
+  std::optional<double> largest_;                // radius [Å]; found out when it is wanted first
   std::shared_ptr<tiles::DetailLevels> levels_;  // none before something may be thinned
   std::map<int, QuadricBuffers> uploaded_;       // by level
 };
