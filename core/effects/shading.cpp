@@ -53,31 +53,9 @@ struct Light {
 HWY_INLINE Vec3 xyz(const glm::vec4& v) {
   return {all(v.x), all(v.y), all(v.z)};
 }
-// Rows have no room beyond their last pixel, and another processor writes the next.
-HWY_INLINE V loadSome(const float* from, std::size_t count) {
-  if (count == laneCount()) return hn::LoadU(F(), from);
-  alignas(64) float values[kMostLanes] = {};
-  std::memcpy(values, from, 4 * count);
-  return hn::Load(F(), values);
-}
-HWY_INLINE void storeSome(V v, std::size_t count, float* to) {
-  if (count == laneCount()) {
-    hn::StoreU(v, F(), to);
-    return;
-  }
-  alignas(64) float values[kMostLanes];
-  hn::Store(v, F(), values);
-  std::memcpy(to, values, 4 * count);
-}
 constexpr float kUnorm16 = 1.0f / 65535.0f;
 HWY_INLINE V loadShares(const std::uint16_t* from, std::size_t count) {
-  const hn::Rebind<std::uint16_t, F> u16;
-  alignas(64) std::uint16_t values[kMostLanes] = {};
-  if (count < laneCount()) {
-    std::copy_n(from, std::min(count, laneCount()), values);
-    from = values;
-  }
-  return hn::ConvertTo(F(), hn::PromoteTo(I(), hn::LoadU(u16, from))) * all(kUnorm16);
+  return hn::ConvertTo(F(), hn::PromoteTo(I(), loadSome(U16(), from, count))) * all(kUnorm16);
 }
 template <typename T>
 HWY_INLINE V loadStrided(const T* from, std::size_t count, std::size_t stride, float unit) {
@@ -146,7 +124,7 @@ HWY_INLINE Light surfaceLight(const ShadeTask& task, std::size_t at, int x, int 
   }
   if (!light.difference.empty()) {
     const V shift =
-        hn::Min(all(b.unsharp.x) * loadSome(light.difference.data() + at, count), all(b.unsharp.y));
+        hn::Min(all(b.unsharp.x) * loadSome(f, light.difference.data() + at, count), all(b.unsharp.y));
     const auto shifted = [&](V c) {
       const V root = hn::Max(hn::Sqrt(c) + shift, zero);
       return root * root;
@@ -199,8 +177,8 @@ void shadeRow(const ShadeTask& task, int y, bool add, const LightRow& out) {
            alpha + left * l.alpha};
     }
     const auto store = [&](V value, float* to) {
-      if (add) value = value + loadSome(to + column, count);
-      storeSome(value, count, to + column);
+      if (add) value = value + loadSome(f, to + column, count);
+      storeSome(f, value, count, to + column);
     };
     store(l.color.x, out.red);
     store(l.color.y, out.green);
@@ -225,7 +203,7 @@ void encodeRow(const EncodeTask& task, const LitRow& row, std::size_t count, std
   const std::size_t pixelBytes = bytesPerPixel(task.format);
   for (std::size_t x = 0; x < count; x += lanes) {
     const std::size_t here = std::min(lanes, count - x);
-    const auto load = [&](const float* from) { return loadSome(from + x, here) * per; };
+    const auto load = [&](const float* from) { return loadSome(f, from + x, here) * per; };
     const Vec3 color{load(row.red), load(row.green), load(row.blue)};
     const V a = load(row.alpha), left = one - a;
     if (task.nothing != nullptr &&

@@ -8,6 +8,7 @@
 #endif
 
 #include <algorithm>
+#include <cstring>
 
 #include "core/effects/surface_planes.h"
 #include "core/tiles/lanes.inl"
@@ -75,17 +76,31 @@ HWY_INLINE Surfaces surfacesAt(const SurfacePlanes& planes, std::size_t at, int 
   return s;
 }
 
-// Stores shares as R16 does, of the first `count` lanes.
-HWY_INLINE void storeShares(V share, std::size_t count, std::uint16_t* out) {
-  const hn::Rebind<std::uint16_t, F> u16;
-  const auto stored = hn::DemoteTo(u16, hn::ConvertTo(I(), share * all(65535.0f) + all(0.5f)));
+using U16 = hn::Rebind<std::uint16_t, F>;
+
+// The first `count` lanes. What is not the planes' has no room beyond its last pixel, and another processor
+// writes the next row. (No more than a vector: GCC 12 takes a count below a single lane for a negative one.)
+template <typename D>
+HWY_INLINE hn::Vec<D> loadSome(D d, const hn::TFromD<D>* from, std::size_t count) {
+  if (count == laneCount()) return hn::LoadU(d, from);
+  alignas(64) hn::TFromD<D> values[kMostLanes] = {};
+  std::memcpy(values, from, sizeof(*from) * std::min(count, laneCount()));
+  return hn::Load(d, values);
+}
+template <typename D>
+HWY_INLINE void storeSome(D d, hn::Vec<D> v, std::size_t count, hn::TFromD<D>* to) {
   if (count == laneCount()) {
-    hn::StoreU(stored, u16, out);
+    hn::StoreU(v, d, to);
     return;
   }
-  alignas(64) std::uint16_t values[kMostLanes];
-  hn::Store(stored, u16, values);
-  std::copy_n(values, std::min(count, laneCount()), out);
+  alignas(64) hn::TFromD<D> values[kMostLanes];
+  hn::Store(v, d, values);
+  std::memcpy(to, values, sizeof(*to) * std::min(count, laneCount()));
+}
+
+// Stores shares as R16 does, of the first `count` lanes.
+HWY_INLINE void storeShares(V share, std::size_t count, std::uint16_t* out) {
+  storeSome(U16(), hn::DemoteTo(U16(), hn::ConvertTo(I(), share * all(65535.0f) + all(0.5f))), count, out);
 }
 
 }  // namespace meniscus::effects::HWY_NAMESPACE
