@@ -330,6 +330,9 @@ int main(int argc, char** argv) {
   try {
     using namespace meniscus;
     const int repetitions = argc > 1 ? std::atoi(argv[1]) : 9;
+    const auto measureFrames = [&] {
+      for (const int atoms : {58000, 1000000}) bench::measureFrames(atoms, repetitions);
+    };
     fmt::print("kind,atoms,what,value or wall ms,processor ms\n# {}\n", tiles::instructionSet());
     if (argc > 2 && std::string_view(argv[2]) == "instructions") {
       bench::measureInstructions(58000);
@@ -337,13 +340,13 @@ int main(int argc, char** argv) {
     }
     const auto context = Context::create(Backend::automatic);
     if (argc > 2 && std::string_view(argv[2]) == "frames") {
-      for (const int atoms : {58000, 1000000}) bench::measureFrames(atoms, repetitions);
+      measureFrames();
       return 0;
     }
     if (argc <= 2) {
       for (const int atoms : {58000, 300000, 1000000}) bench::measure(atoms, repetitions);
       bench::measureWidths(58000, repetitions);
-      for (const int atoms : {58000, 1000000}) bench::measureFrames(atoms, repetitions);
+      measureFrames();
     }
     for (int i = 2; i < argc; ++i) bench::measure(std::atoi(argv[i]), repetitions);
     return 0;

@@ -3,7 +3,6 @@
 #include <glad/gl.h>
 
 #include <algorithm>
-#include <cmath>
 #include <glm/vec4.hpp>
 #include <utility>
 

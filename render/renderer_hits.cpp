@@ -1,5 +1,6 @@
 // What rays meet, without light.
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <limits>
