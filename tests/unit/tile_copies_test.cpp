@@ -60,7 +60,7 @@ TEST_P(TileCopies, ShowWhatEachCopyByItselfShows) {
 TEST_P(TileCopies, ListsHideNothingThatIsSeen) {
   const Primitives shared = manyCopies(50, 110, 8, 40);
   ASSERT_FALSE(clustersOf(shared).empty());
-  View view = viewOfBounds(shared, {96, 80}, GetParam());
+  View view = viewOfBounds(shared, sizeForForce(96, 80), GetParam());
   for (const double nearZ : {view.nearZ, 0.0}) {
     view.nearZ = nearZ;
     const TileTarget target = targetOf(shared, view);

@@ -28,7 +28,7 @@ TEST_P(Tiles, ListsHideNothingThatIsSeen) {
   for (const int count : {1, 30, 2000}) {
     const Primitives primitives = allKinds(count, 7);
     for (const double fovY : {0.1, 0.5, 1.5}) {
-      const View view = test::viewOf(primitives, {157, 123}, GetParam(), fovY);
+      const View view = test::viewOf(primitives, sizeForForce(157, 123), GetParam(), fovY);
       for (const glm::vec2 shift : {glm::vec2(0, 0), glm::vec2(-0.47f, 0.49f)}) {
         const TileTarget target = targetOf(primitives, view, shift);
         expectSame(castByLists(primitives, target), castByForce(primitives, target), "lists and brute force");
@@ -59,7 +59,7 @@ TEST_P(Tiles, ListsHideNothingFromWithin) {
 TEST_P(Tiles, ClustersHideNothingThatIsSeen) {
   const Primitives primitives = allKinds(9000, 21);
   ASSERT_FALSE(clustersOf(primitives).list().empty());
-  const View view = test::viewOf(primitives, {96, 96}, GetParam());
+  const View view = test::viewOf(primitives, sizeForForce(96, 96), GetParam());
   const TileTarget target = targetOf(primitives, view);
   expectSame(castByLists(primitives, target), castByForce(primitives, target), "clusters and brute force");
   View within = view;
