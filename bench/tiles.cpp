@@ -1,7 +1,7 @@
 // Spheres from tile lists against splatting them and against Embree, binning or build included, 1024 x 768, a
 // ball of atoms as dense as a protein that fills the height.
 //
-//   tiles [repetitions [frames | instructions | atoms ...]] > tiles.csv
+//   tiles [repetitions [frames | bezier | instructions | atoms ...]] > tiles.csv
 //
 // Times are medians of interleaved repetitions, by the clock and of the processor (all threads: what a
 // machine busy with other work distorts less); ratios are within one run. Nothing is read back.
@@ -265,6 +265,51 @@ void measureFrames(int wanted, int repetitions) {
   std::fflush(stdout);
 }
 
+// The pass that draws the exact surface, lists and whatever else a new view needs included, by tiles and by
+// Bézier clipping: a degree further in every repetition.
+void measureAgainstBezier(int wanted, int repetitions) {
+  const Primitives spheres = proteinLike(wanted);
+  const auto surface = std::make_shared<Primitives>();
+  surface->surfaces.push_back(surfaceOf(spheres));
+  const std::array<std::string, 2> methods{"tiles", "bezier"};
+  std::array<std::unique_ptr<Renderer>, 2> renderers;
+  std::array<Times, 2> times;
+  for (std::unique_ptr<Renderer>& renderer : renderers) {
+    renderer = std::make_unique<Renderer>(RendererOptions{.timePasses = true});
+    renderer->setPrimitives(surface);
+  }
+  View view = filling(spheres);
+  for (int repetition = -1; repetition < repetitions; ++repetition) {
+    view.rotation = glm::dmat3(glm::rotate(glm::dmat4(view.rotation), 0.01745, glm::dvec3(0, 1, 0)));
+    for (std::size_t m = 0; m < methods.size(); ++m) {
+      RenderSettings settings;
+      settings.samples = 1;
+      settings.surface.method = methods[m];
+      NullSink sink;
+      renderers[m]->forgetStats();
+      renderers[m]->renderPicture(view, Lighting{}, {}, settings, PixelFormat::rgba8, sink);
+      if (repetition < 0) continue;
+      double wall = 0, processor = 0;  // of all parts of the picture
+      for (const PassStats& pass : renderers[m]->stats().passes) {
+        if (!pass.name.starts_with("surface")) continue;
+        wall += pass.milliseconds;
+        processor += pass.processorMs;
+      }
+      times[m].wall.push_back(wall);
+      times[m].processor.push_back(processor);
+    }
+  }
+  AllTimes all;
+  for (std::size_t m = 0; m < methods.size(); ++m) {
+    const std::string name = "surface pass by " + methods[m];
+    all[name] = times[m];
+    fmt::print("pass,{},\"{}\",{:.2f},{:.2f}\n", spheres.spheres.size(), name, median(times[m].wall),
+               median(times[m].processor));
+  }
+  printRatio(all, spheres.spheres.size(), "surface pass by bezier", "surface pass by tiles");
+  std::fflush(stdout);
+}
+
 // What the width of the vectors brings.
 void measureWidths(int wanted, int repetitions) {
   const Primitives primitives = proteinLike(wanted);
@@ -341,6 +386,10 @@ int main(int argc, char** argv) {
     const auto context = Context::create(Backend::automatic);
     if (argc > 2 && std::string_view(argv[2]) == "frames") {
       measureFrames();
+      return 0;
+    }
+    if (argc > 2 && std::string_view(argv[2]) == "bezier") {
+      for (const int atoms : {4500, 58000, 300000}) bench::measureAgainstBezier(atoms, repetitions);
       return 0;
     }
     if (argc <= 2) {

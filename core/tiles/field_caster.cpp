@@ -13,11 +13,14 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <vector>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/tiles/field_caster.cpp"
 #include <hwy/foreach_target.h>
 // After foreach_target.h.
+#include "core/tiles/field_front.inl"
 #include "core/tiles/field_walk.inl"
 #include "core/tiles/lanes.inl"
 
@@ -30,37 +33,36 @@ constexpr float kRoundingOfW = 1.2e-7f;
 
 // Normal, colour and id of hits.
 template <typename Kernel>
-void shade(Kernel kernel, const FieldTile& tile, const TileRays& rays, const Packet& p, V t, M hit, M inside,
+void shade(Kernel kernel, const FieldTile& tile, const Balls& balls, const Packet& p, V t, M hit, M inside,
            const PlaneChannels& channels, std::size_t k, TilePixels& out) {
   const F f;
   const U u;
   const V zero = hn::Zero(f);
   const V z = hn::IfThenElse(hit, p.direction.z * t, all(kFar));
-  const float lowest = static_cast<float>(p.zStart) + hn::GetLane(hn::MinOfLanes(f, z));
+  const float lowest = hn::GetLane(hn::MinOfLanes(f, z)) - balls.slack;
   Vec3 normal{zero, zero, zero}, color{zero, zero, zero};
   V shares = zero, largest = all(-1.0f);
   auto id = hn::Zero(u);
-  for (const std::uint32_t index : tile.list) {
-    const BallRecord& b = tile.records[index];
-    if (b.front + tile.slack < lowest) break;
-    const Point point = pointNear(b, rays, p);
+  for (const TileBall& b : balls.list) {
+    if (b.front < lowest) break;
+    const Point point = pointNear(b, tile, p);
     const Vec3 from = add(point.position, scale(p.direction, t - point.t));
     // At the lowest levels a surface lies where its ball ends: rounding must not leave it without one.
-    const V rounded = all(1.0f) - dot(from, from) * all(b.inverseSupport2);
+    const V rounded = all(1.0f) - dot(from, from) * all(b.inverse2);
     const M in = hn::And(hit, rounded > all(-kRoundingOfW));
     if (hn::AllFalse(f, in)) continue;
     const V w = hn::Max(rounded, all(kRoundingOfW));
-    const V weight = hn::IfThenElseZero(in, kernel.slope(w) * all(b.coefficient * b.inverseSupport2));
+    const V weight = hn::IfThenElseZero(in, kernel.slope(w) * all(b.coefficient * b.inverse2));
     normal = add(normal, {hn::IfThenElseZero(in, from.x) * weight, hn::IfThenElseZero(in, from.y) * weight,
                           hn::IfThenElseZero(in, from.z) * weight});
     if (!(b.coefficient > 0)) continue;
     const V share = hn::IfThenElseZero(in, kernel.value(w) * all(b.coefficient));
     shares = shares + share;
-    color =
-        add(color, scale({all(b.colorSquared[0]), all(b.colorSquared[1]), all(b.colorSquared[2])}, share));
+    const BallRecord& r = tile.records[b.record];
+    color = add(color, scale(splat(r.colorSquared), share));
     const M more = share > largest;
     largest = hn::IfThenElse(more, share, largest);
-    id = hn::IfThenElse(hn::RebindMask(u, more), hn::Set(u, b.id), id);
+    id = hn::IfThenElse(hn::RebindMask(u, more), hn::Set(u, r.id), id);
   }
   const auto bits = hn::RebindMask(u, hit);
   if (channels.id) hn::Store(hn::IfThenElseZero(bits, id), u, out.id + k);
@@ -83,51 +85,88 @@ void shade(Kernel kernel, const FieldTile& tile, const TileRays& rays, const Pac
   }
 }
 
-template <typename Kernel>
-bool castWith(Kernel kernel, const FieldTile& tile, const TileRays& rays, const PlaneChannels& channels,
-              double zStart, double eyeZ, ChordWindow& window, TilePixels& out, FieldCounts& counts) {
+void storeBackground(std::size_t k, const PlaneChannels& channels, TilePixels& out) {
   const F f;
-  for (std::size_t k = 0; k < kTilePixels; k += laneCount()) {
-    Packet p;
-    p.direction = directionOf(rays, k);
-    p.inverseZ = all(1.0f) / p.direction.z;
-    p.laneX = hn::Load(f, rays.laneX + k);
-    p.laneY = hn::Load(f, rays.laneY + k);
-    p.zStart = zStart;
-    p.eyeT = static_cast<float>(eyeZ - zStart);
-    V t = all(kFar);
-    M inside = hn::MaskFromVec(hn::Zero(f));
-    if (!Walk<Kernel>(kernel, tile, rays, p, window, counts).firstRoots(t, inside)) return false;
+  const U u;
+  hn::Store(hn::Zero(f), f, out.depth + k);
+  if (channels.distance) hn::Store(all(kFar), f, out.distance + k);
+  if (channels.albedo) hn::Store(hn::Zero(u), u, out.albedo + k);
+  if (channels.normal) hn::Store(hn::Zero(u), u, out.normal + k);
+  if (channels.id) hn::Store(hn::Zero(u), u, out.id + k);
+}
+
+constexpr std::size_t kPackets = kTilePixels / laneCount();  // of a tile
+
+// Rays k and following of a tile.
+Packet packetOf(const TileRays& rays, std::size_t k, double zStart) {
+  Packet p;
+  p.direction = directionOf(rays, k);
+  p.inverseZ = all(1.0f) / p.direction.z;
+  p.laneX = hn::Load(F(), rays.laneX + k);
+  p.laneY = hn::Load(F(), rays.laneY + k);
+  p.eyeZ = static_cast<float>(rays.eyeZExact - zStart);
+  p.nearZ = static_cast<float>(static_cast<double>(rays.nearZ) - zStart);
+  return p;
+}
+
+template <typename Kernel>
+bool castWith(Kernel kernel, const FieldTile& tile, std::span<TileBall> tileBalls, const TileRays& rays,
+              const PlaneChannels& channels, double zStart, ChordWindow& window, TilePixels& out,
+              FieldCounts& counts) {
+  const F f;
+  const auto level = static_cast<float>(tile.field->level);
+  Balls balls{tileBalls, tile.slack, 0};
+  if (std::none_of(tileBalls.begin(), tileBalls.end(), [](const TileBall& b) { return b.fromEye; })) {
+    const Front<Kernel> front(kernel, tileBalls, rays, level, static_cast<float>(tile.largestSupport));
+    balls.depth = front.depth(tile.slack);
+    const auto left = std::remove_if(tileBalls.begin(), tileBalls.end(),
+                                     [&](const TileBall& b) { return b.back > -balls.depth; });
+    balls.list = {tileBalls.begin(), left};
+  }
+  if (balls.list.empty()) {
+    for (std::size_t k = 0; k < kTilePixels; k += laneCount()) storeBackground(k, channels, out);
+    return true;
+  }
+  Brackets brackets[kPackets];
+  V hits[kPackets];
+  M inside[kPackets];
+  for (std::size_t i = 0; i < kPackets; ++i) {
+    const Packet p = packetOf(rays, i * laneCount(), zStart);
+    if (!Walk<Kernel>(kernel, tile, balls, p, window, brackets[i], counts).firstRoots(hits[i], inside[i]))
+      return false;
+  }
+  solve(kernel, brackets, kPackets, toleranceOf(tile), level, hits, counts);
+  for (std::size_t i = 0; i < kPackets; ++i) {
+    const std::size_t k = i * laneCount();
+    const Packet p = packetOf(rays, k, zStart);
+    const V t = hits[i];
     M hit = t < all(kFar);
     const V z = all(static_cast<float>(zStart)) + p.direction.z * hn::IfThenElseZero(hit, t);
     const V value = depthValue(rays, z);
     hit = hn::And(hit, value > hn::Zero(f));
-    hn::Store(hn::IfThenElseZero(hit, hn::Min(value, all(1.0f))), f, out.depth + k);
-    if (channels.distance) hn::Store(hn::IfThenElse(hit, t, all(kFar)), f, out.distance + k);
     if (hn::AllFalse(f, hit)) {
-      hn::Store(hn::Zero(U()), U(), out.albedo + k);
-      hn::Store(hn::Zero(U()), U(), out.normal + k);
-      hn::Store(hn::Zero(U()), U(), out.id + k);
+      storeBackground(k, channels, out);
       continue;
     }
+    hn::Store(hn::IfThenElseZero(hit, hn::Min(value, all(1.0f))), f, out.depth + k);
+    if (channels.distance) hn::Store(hn::IfThenElse(hit, t, all(kFar)), f, out.distance + k);
     if (channels.albedo || channels.normal || channels.id)
-      shade(kernel, tile, rays, p, hn::IfThenElseZero(hit, t), hit, inside, channels, k, out);
+      shade(kernel, tile, balls, p, hn::IfThenElseZero(hit, t), hit, inside[i], channels, k, out);
   }
   return true;
 }
 
-bool castFieldTile(const FieldTile& tile, const TileRays& rays, const PlaneChannels& channels, double zStart,
-                   TilePixels& out, FieldCounts& counts) {
+bool castFieldTile(const FieldTile& tile, std::span<TileBall> balls, const TileRays& rays,
+                   const PlaneChannels& channels, double zStart, TilePixels& out, FieldCounts& counts) {
   thread_local ChordWindow window(16);
-  const double eyeZ = rays.eyeZExact;
   const Kernel& kernel = tile.field->kernel;
   switch (kernel.shape) {
     case KernelShape::sextic:
-      return castWith(SexticKernel{0}, tile, rays, channels, zStart, eyeZ, window, out, counts);
+      return castWith(SexticKernel{0}, tile, balls, rays, channels, zStart, window, out, counts);
     case KernelShape::quartic:
-      return castWith(QuarticKernel{0}, tile, rays, channels, zStart, eyeZ, window, out, counts);
+      return castWith(QuarticKernel{0}, tile, balls, rays, channels, zStart, window, out, counts);
     case KernelShape::power:
-      return castWith(PowerKernel{kernel.exponent}, tile, rays, channels, zStart, eyeZ, window, out, counts);
+      return castWith(PowerKernel{kernel.exponent}, tile, balls, rays, channels, zStart, window, out, counts);
   }
   return false;
 }
@@ -142,6 +181,25 @@ namespace meniscus::tiles {
 HWY_EXPORT(castFieldTile);
 
 namespace {
+
+void makeTileBalls(const FieldTile& tile, const TileRays& rays, double zStart, std::vector<TileBall>& balls) {
+  balls.resize(tile.list.size());
+  for (std::size_t i = 0; i < balls.size(); ++i) {
+    const BallRecord& r = tile.records[tile.list[i]];
+    TileBall& b = balls[i];
+    b.x = static_cast<float>(r.pixelX - rays.cornerX);
+    b.y = static_cast<float>(r.pixelY - rays.cornerY);
+    b.z = static_cast<float>(r.centerZ - zStart);
+    b.perPixel = r.perPixel;
+    b.front = static_cast<float>(static_cast<double>(r.front) - zStart);
+    b.back = b.z - std::sqrt(r.support2);
+    b.support2 = r.support2;
+    b.inverse2 = r.inverseSupport2;
+    b.coefficient = r.coefficient;
+    b.record = tile.list[i];
+    b.fromEye = r.fromEye != 0;
+  }
+}
 
 // Distance along the unit ray from t, in double precision: rounded once.
 void storeDistances(const TileRays& rays, double zStart, TilePixels& out) {
@@ -178,7 +236,9 @@ bool castField(const FieldTile& tile, const TileRays& rays, const PlaneChannels&
   // Where the list begins, but not before the near plane.
   const float front = tile.records[tile.list.front()].front + tile.slack;
   const double zStart = static_cast<double>(front < rays.nearZ ? front : rays.nearZ);
-  if (!HWY_DYNAMIC_DISPATCH(castFieldTile)(tile, rays, channels, zStart, out, counts)) return false;
+  thread_local std::vector<TileBall> balls;
+  makeTileBalls(tile, rays, zStart, balls);
+  if (!HWY_DYNAMIC_DISPATCH(castFieldTile)(tile, balls, rays, channels, zStart, out, counts)) return false;
   if (channels.distance) storeDistances(rays, zStart, out);
   toRows(out.depth);
   if (channels.distance) toRows(out.distance);

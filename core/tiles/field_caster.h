@@ -32,6 +32,18 @@ struct FieldTile {
   bool cut = false;                     ///< the list ends where cores hide what follows
 };
 
+/// A ball as a tile's rays take it: from the tile's corner, and from the plane z = zStart of view space that
+/// rays are measured from.
+struct TileBall {
+  float x, y;         ///< its centre [pixels]
+  float z;            ///< [Å], less than 0 behind the plane
+  float perPixel;     ///< [Å] in the centre's plane
+  float front, back;  ///< largest and smallest z
+  float support2, inverse2, coefficient;
+  std::uint32_t record;
+  bool fromEye;
+};
+
 /// rays: of LaneOrder::squares. What is wanted of `out` is written in rows, background included. Returns
 /// whether it could be done: a ray that begins inside the surface sees its far wall, for which a cut list
 /// does not do.
@@ -50,7 +62,7 @@ class ChordWindow {
   std::size_t capacity = 0;
   float *middle = nullptr, *half2 = nullptr, *enter = nullptr, *leave = nullptr;  // a vector for each chord
   float *inverse2 = nullptr, *coefficient = nullptr;                              // a number for each chord
-  std::uint32_t* record = nullptr;                                                // whose chord it is
+  std::uint32_t* ball = nullptr;                                                  // whose chord it is
 
  private:
   std::size_t lanes_;

@@ -23,7 +23,7 @@ struct Quadratic {
 
 /// Polynomial coefficients, a vector each.
 struct Coefficients {
-  alignas(64) float c[(kMostDegree + 1) * 16];
+  alignas(64) float c[(kMostDegree + 1) * laneCount()];
   HWY_INLINE V get(int k) const { return hn::Load(F(), c + static_cast<std::size_t>(k) * laneCount()); }
   HWY_INLINE void set(int k, V v) { hn::Store(v, F(), c + static_cast<std::size_t>(k) * laneCount()); }
   HWY_INLINE void add(int k, V v) { set(k, get(k) + v); }

@@ -8,9 +8,11 @@
 #endif
 
 #include <limits>
+#include <span>
 
 #include "core/tiles/field_caster.h"
 #include "core/tiles/field_kernels.inl"
+#include "core/tiles/field_roots.inl"
 #include "core/tiles/lanes.inl"
 
 HWY_BEFORE_NAMESPACE();
@@ -18,15 +20,21 @@ namespace meniscus::tiles::HWY_NAMESPACE {
 namespace {
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
-constexpr int kMostIterations = 64;  // of the root finder: halving alone needs 24
 
-// Where a packet of rays begins, in its tile's frame: t = 0 on the plane z = zStart of view space.
+// A packet of rays in its tile's frame: t = 0 on the plane that the tile's balls are measured from.
 struct Packet {
   Vec3 direction;
   V inverseZ;  // 1 / direction.z
   V laneX, laneY;
-  double zStart;
-  float eyeT;  // z of the eye above zStart
+  float eyeZ;   // of the eye above that plane
+  float nearZ;  // of the near plane
+};
+
+// What a tile's packets walk through.
+struct Balls {
+  std::span<const TileBall> list;
+  float slack;  // how much nearer a later one can be than an earlier one
+  float depth;  // below the plane, before which no ray reaches the level; 0: not looked for
 };
 
 struct Point {
@@ -34,19 +42,20 @@ struct Point {
   V t;
 };
 
-HWY_INLINE Point pointNear(const BallRecord& b, const TileRays& rays, const Packet& p) {
-  if (b.fromEye != 0) return {{all(-b.centerX), all(-b.centerY), all(b.eyeAbove)}, all(p.eyeT) * p.inverseZ};
-  const auto x0 = static_cast<float>(b.pixelX - rays.cornerX),
-             y0 = static_cast<float>(b.pixelY - rays.cornerY);
-  return {{all(b.perPixel) * (p.laneX - all(x0)), all(b.perPixel) * (p.laneY - all(y0)), hn::Zero(F())},
-          all(static_cast<float>(b.centerZ - p.zStart)) * p.inverseZ};
+HWY_INLINE Point pointNear(const TileBall& b, const FieldTile& tile, const Packet& p) {
+  if (b.fromEye) {
+    const BallRecord& r = tile.records[b.record];
+    return {{all(-r.centerX), all(-r.centerY), all(r.eyeAbove)}, all(p.eyeZ) * p.inverseZ};
+  }
+  return {{all(b.perPixel) * (p.laneX - all(b.x)), all(b.perPixel) * (p.laneY - all(b.y)), hn::Zero(F())},
+          all(b.z) * p.inverseZ};
 }
 
 // Where a ray is nearest to a ball's centre, and the square of half its chord in the ball of this squared
 // radius (negative: none).
-HWY_INLINE void chordOf(const BallRecord& b, const TileRays& rays, const Packet& p, float radius2, V& middle,
+HWY_INLINE void chordOf(const TileBall& b, const FieldTile& tile, const Packet& p, float radius2, V& middle,
                         V& half2) {
-  const Point point = pointNear(b, rays, p);
+  const Point point = pointNear(b, tile, p);
   const V along = dot(point.position, p.direction);
   const Vec3 nearest = sub(point.position, scale(p.direction, along));
   half2 = all(radius2) - dot(nearest, nearest);
@@ -56,48 +65,53 @@ HWY_INLINE void chordOf(const BallRecord& b, const TileRays& rays, const Packet&
 template <typename Kernel>
 class Walk {
  public:
-  Walk(Kernel kernel, const FieldTile& tile, const TileRays& rays, const Packet& packet, ChordWindow& window,
-       FieldCounts& counts)
+  Walk(Kernel kernel, const FieldTile& tile, const Balls& balls, const Packet& packet, ChordWindow& window,
+       Brackets& brackets, FieldCounts& counts)
       : kernel_(kernel),
         tile_(tile),
-        rays_(rays),
+        balls_(balls),
         packet_(packet),
         window_(window),
+        brackets_(brackets),
         counts_(counts),
         level_(static_cast<float>(tile.field->level)),
-        tolerance_(static_cast<float>(2e-7 * tile.largestSupport)),
-        waitingNow_(hn::Zero(F())),
-        waitingNext_(all(1.0f)) {
-    for (int k = 0; k <= kernel.degree(); ++k) waiting_.set(k, all(k == 0 ? -1.0f : 1.0f));
+        tolerance_(toleranceOf(tile)) {
+    brackets.clear(kernel.degree());
   }
 
-  // Parameters of the hits, infinity where there is none; inside: rays that began inside. False if the list
-  // does not do for these.
+  // Parameters of the hits, infinity where there is none or where a root lies alone in a bracket that solve() is to
+  // narrow; inside: rays that began inside. False if the list does not do for these.
   bool firstRoots(V& hitOut, M& insideOut) {
     const F f;
     const V far = all(kFar);
     V hit = far;
-    now_ = all(static_cast<float>(static_cast<double>(rays_.nearZ) - packet_.zStart)) * packet_.inverseZ;
+    now_ = all(balls_.depth > 0 ? -balls_.depth : packet_.nearZ) * packet_.inverseZ;
     next_ = far;
     live_ = hn::Not(hn::MaskFromVec(hn::Zero(f)));
-    inside_ = bracketed_ = hn::MaskFromVec(hn::Zero(f));
+    inside_ = hn::MaskFromVec(hn::Zero(f));
     bool atStart = true;
+    M stopped = inside_;  // rays that wait on an interval that may hold a root until all others do
     for (;;) {
       load();
       live_ = hn::And(live_, next_ < far);
       if (hn::AllFalse(f, live_)) break;
       if (atStart) {
         counts_.rays += hn::CountTrue(f, live_);
-        inside_ = hn::And(live_, fieldAtStart() > hn::Zero(f));
+        if (!(balls_.depth > 0)) inside_ = hn::And(live_, fieldAtStart() > hn::Zero(f));
         atStart = false;
         if (tile_.cut && !hn::AllFalse(f, inside_)) return false;
       }
-      M candidates = hn::And(live_, hn::Or(inside_, boundOnInterval() > all(level_)));
-      while (!hn::AllFalse(f, candidates)) candidates = lookInto(candidates, hit);
+      stopped = hn::Or(stopped, hn::And(live_, hn::Or(inside_, boundOnInterval(stopped) > all(level_))));
+      stopped = hn::And(stopped, live_);
+      const M moving = hn::AndNot(stopped, live_);
+      if (!hn::AllFalse(f, moving)) {
+        advance(moving);
+        continue;
+      }
+      while (!hn::AllFalse(f, stopped)) stopped = lookInto(stopped, hit);
       if (hn::AllFalse(f, live_)) break;
-      advance();
+      advance(live_);
     }
-    if (!hn::AllFalse(f, bracketed_)) hit = hn::IfThenElse(bracketed_, solveBracketed(), hit);
     insideOut = inside_;
     hitOut = hit;
     return true;
@@ -115,18 +129,15 @@ class Walk {
   // Takes from the list what can begin before the next event of any ray.
   void load() {
     const F f;
-    bool changed = true;
-    float lowest = 0;
-    for (; taken_ < tile_.list.size(); ++taken_) {
-      if (changed) {  // z of the farthest next event
-        const V z = hn::IfThenElse(live_, packet_.direction.z * next_, all(kFar));
-        lowest = static_cast<float>(packet_.zStart) + hn::GetLane(hn::MinOfLanes(f, z));
-        changed = false;
-      }
-      const BallRecord& b = tile_.records[tile_.list[taken_]];
-      if (b.front + tile_.slack <= lowest) break;
+    const auto zOfNext = [&] {  // from which on a ball may begin before the next event
+      return hn::IfThenElse(live_, packet_.direction.z * next_, all(kFar)) - all(balls_.slack);
+    };
+    V z = zOfNext();
+    for (; taken_ < balls_.list.size(); ++taken_) {
+      const TileBall& b = balls_.list[taken_];
+      if (hn::AllTrue(f, z >= all(b.front))) break;
       V middle, half2;
-      chordOf(b, rays_, packet_, b.support2, middle, half2);
+      chordOf(b, tile_, packet_, b.support2, middle, half2);
       const M met = hn::And(half2 > hn::Zero(f), live_);
       if (hn::AllFalse(f, met)) continue;
       const V half = hn::Sqrt(hn::Max(half2, hn::Zero(f)));
@@ -142,12 +153,12 @@ class Walk {
       hn::Store(half2, f, window_.half2 + at);
       hn::Store(enter, f, window_.enter + at);
       hn::Store(leave, f, window_.leave + at);
-      window_.inverse2[count_] = b.inverseSupport2;
+      window_.inverse2[count_] = b.inverse2;
       window_.coefficient[count_] = b.coefficient;
-      window_.record[count_] = tile_.list[taken_];
+      window_.ball[count_] = static_cast<std::uint32_t>(taken_);
       ++count_;
       next_ = hn::Min(next_, eventAfter(now_, enter, leave));
-      changed = true;
+      z = zOfNext();
     }
   }
 
@@ -168,9 +179,9 @@ class Walk {
 
   // An upper bound of the sum of all q f on [now, next]: each ball at its nearest point; what takes away
   // counts nothing.
-  HWY_INLINE V boundOnInterval() {
+  HWY_INLINE V boundOnInterval(M known) {
     const F f;
-    counts_.intervals += hn::CountTrue(f, live_);
+    counts_.intervals += hn::CountTrue(f, hn::AndNot(known, live_));
     const V zero = hn::Zero(f);
     V sum = zero;
     for (std::size_t i = 0; i < count_; ++i) {
@@ -228,9 +239,9 @@ class Walk {
       const M here = hn::And(lone, coversInterval(i));
       if (hn::AllFalse(f, here)) continue;
       lone = hn::AndNot(here, lone);
-      const BallRecord& b = tile_.records[window_.record[i]];
+      const TileBall& b = balls_.list[window_.ball[i]];
       V middle, half2;
-      chordOf(b, rays_, packet_, b.core2, middle, half2);
+      chordOf(b, tile_, packet_, tile_.records[b.record].core2, middle, half2);
       const M met = half2 > hn::Zero(f);
       const V half = hn::Sqrt(hn::Max(half2, hn::Zero(f)));
       const V enter = hn::IfThenElse(met, middle - half, all(kFar)),
@@ -293,98 +304,17 @@ class Walk {
   // so that the root finder runs once, and not once for every few of them.
   HWY_INLINE void postpone(M single) {
     for (int k = 0; k <= kernel_.degree(); ++k)
-      waiting_.set(k, hn::IfThenElse(single, polynomial_.get(k), waiting_.get(k)));
-    waitingNow_ = hn::IfThenElse(single, now_, waitingNow_);
-    waitingNext_ = hn::IfThenElse(single, next_, waitingNext_);
-    bracketed_ = hn::Or(bracketed_, single);
+      brackets_.polynomial.set(k, hn::IfThenElse(single, polynomial_.get(k), brackets_.polynomial.get(k)));
+    brackets_.now = hn::IfThenElse(single, now_, brackets_.now);
+    brackets_.next = hn::IfThenElse(single, next_, brackets_.next);
+    brackets_.found = hn::Or(brackets_.found, single);
     live_ = hn::AndNot(single, live_);
   }
 
-  HWY_INLINE V solveBracketed() {
-    for (int k = 0; k <= kernel_.degree(); ++k) polynomial_.set(k, waiting_.get(k));
-    now_ = waitingNow_;
-    next_ = waitingNext_;
-    return now_ + solve(bracketed_) * (next_ - now_);
-  }
-
-  // The polynomial at u, by Horner's rule for scaled Bernstein coefficients.
-  HWY_INLINE V polynomialAt(V u) const {
-    const V v = all(1.0f) - u;
-    V power = v;
-    V sum = polynomial_.get(kernel_.degree());
-    for (int k = kernel_.degree() - 1; k >= 0; --k) {
-      sum = sum * u + polynomial_.get(k) * power;
-      power = power * v;
-    }
-    return sum;
-  }
-
-  // The root in [0, 1] of polynomials that are negative at 0 and positive at 1: secants within a bracket, the
-  // weight of an end that stays reduced (Anderson and Björck 1973, doi 10.1007/BF01951936), and a halving
-  // wherever the bracket has not shrunk to half in two steps.
-  V solve(M wanted) {
+  // Some rays to their next event; drops the chords that every ray has left.
+  void advance(M moving) {
     const F f;
-    const V zero = hn::Zero(f), half = all(0.5f);
-    V low = zero, high = all(1.0f), atLow = polynomial_.get(0), atHigh = polynomial_.get(kernel_.degree());
-    V valueLow = atLow, valueHigh = atHigh;  // without the weights
-    const V width = next_ - now_;
-    const V least = hn::Max(all(tolerance_), hn::Max(hn::Abs(now_), hn::Abs(next_)) * all(1.2e-7f)) / width;
-    V before = all(4.0f);  // width of the bracket two steps ago
-    V last = before;
-    M active = wanted, lastUp = hn::MaskFromVec(zero), lastDown = lastUp;
-    std::uint64_t most = 0;
-    for (int i = 0; i < kMostIterations && !hn::AllFalse(f, active); ++i) {
-      counts_.iterations += hn::CountTrue(f, active);
-      ++most;
-      const V span = high - low;
-      const M slow = span > half * before;
-      V u = low - atLow * (span / (atHigh - atLow));
-      const V middle = low + half * span;
-      // Outside, or not a number (both ends zero).
-      u = hn::IfThenElse(hn::And(u > low, u < high), u, middle);
-      u = hn::IfThenElse(slow, middle, u);
-      // Not nearer to an end than the tolerance: an end that is the root, nearly, is closed in by one step,
-      // and a secant that creeps along a steep field does not pass for one that has arrived.
-      const V step = hn::Min(least, half * span);
-      u = hn::Min(hn::Max(u, low + step), high - step);
-      const V value = polynomialAt(u);
-      const M above = value > zero;
-      const M up = hn::And(active, above), down = hn::AndNot(above, active);
-      before = last;
-      last = span;
-      high = hn::IfThenElse(up, u, high);
-      low = hn::IfThenElse(down, u, low);
-      // The end that stays weighs less if it stayed before: by how much the value at the other end has
-      // fallen.
-      const auto weight = [&](V old) {
-        const V left = all(1.0f) - value / old;
-        return hn::IfThenElse(left > zero, left, half);
-      };
-      const V lowWeight = hn::IfThenElse(lastUp, weight(atHigh), all(1.0f)),
-              highWeight = hn::IfThenElse(lastDown, weight(atLow), all(1.0f));
-      const V newLow = hn::IfThenElse(down, value, hn::IfThenElse(up, atLow * lowWeight, atLow));
-      atHigh = hn::IfThenElse(up, value, hn::IfThenElse(down, atHigh * highWeight, atHigh));
-      atLow = newLow;
-      valueLow = hn::IfThenElse(down, value, valueLow);
-      valueHigh = hn::IfThenElse(up, value, valueHigh);
-      lastUp = above;
-      lastDown = hn::Not(above);
-      active =
-          hn::And(active, hn::And(hn::Abs(value) > all(kRounding * level_), high - low > all(1.5f) * least));
-    }
-    counts_.notConverged += hn::CountTrue(f, active);
-    if (most > counts_.mostIterations) counts_.mostIterations = most;
-    // Within a bracket as narrow as the tolerance the field is straight; a wider one has its root at an end.
-    V root = low - valueLow * ((high - low) / (valueHigh - valueLow));
-    root = hn::IfThenElse(hn::And(root >= low, root <= high), root, low + half * (high - low));
-    const V nearer = hn::IfThenElse(hn::Abs(valueLow) < hn::Abs(valueHigh), low, high);
-    return hn::IfThenElse(high - low > all(1.5f) * least, nearer, root);
-  }
-
-  // To the next event; drops the chords that every ray has left.
-  void advance() {
-    const F f;
-    now_ = hn::IfThenElse(live_, next_, now_);
+    now_ = hn::IfThenElse(moving, next_, now_);
     next_ = all(kFar);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < count_; ++i) {
@@ -400,29 +330,25 @@ class Walk {
         hn::Store(leave, f, window_.leave + to);
         window_.inverse2[kept] = window_.inverse2[i];
         window_.coefficient[kept] = window_.coefficient[i];
-        window_.record[kept] = window_.record[i];
+        window_.ball[kept] = window_.ball[i];
       }
       ++kept;
     }
     count_ = kept;
   }
 
-  static constexpr float kRounding = 6e-8f;
-
   Kernel kernel_;
   const FieldTile& tile_;
-  const TileRays& rays_;
+  const Balls& balls_;
   const Packet& packet_;
   ChordWindow& window_;
+  Brackets& brackets_;
   FieldCounts& counts_;
   float level_, tolerance_;
   std::size_t taken_ = 0, count_ = 0;  // of the list; of the window
   V now_, next_;                       // the interval that is looked at
   M live_, inside_;
   Coefficients polynomial_;
-  M bracketed_;  // rays whose root lies alone between waitingNow_ and waitingNext_
-  V waitingNow_, waitingNext_;
-  Coefficients waiting_;
 };
 
 }  // namespace

@@ -50,7 +50,7 @@ void ChordWindow::grow() {
   move(leave, lanes_);
   move(inverse2, 1);
   move(coefficient, 1);
-  move(record, 1);
+  move(ball, 1);
   ::operator delete(memory_, kAlignment);
   memory_ = memory;
   capacity = larger;

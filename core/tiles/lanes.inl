@@ -24,9 +24,9 @@ using I = hn::RebindToSigned<F>;
 using V = hn::Vec<F>;
 using M = hn::Mask<F>;
 
-// Lanes of a packet.
-HWY_INLINE std::size_t laneCount() {
-  return hn::Lanes(F());
+// Lanes of a packet: vectors of a length that is known only at run time (SVE, RISC-V) are not compiled for.
+constexpr std::size_t laneCount() {
+  return hn::MaxLanes(F());
 }
 HWY_INLINE V all(float x) {
   return hn::Set(F(), x);

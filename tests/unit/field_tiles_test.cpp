@@ -116,6 +116,30 @@ TEST_P(FieldTilesTest, HitsAreTheTruthWhereTheNearPlaneCuts) {
   }
 }
 
+// Tiles that are wide and deep, balls of every size, some of which take away, far apart in depth: no tile's
+// rays begin behind what they meet.
+TEST_P(FieldTilesTest, NothingIsPassedOver) {
+  for (unsigned seed = 0; seed < 12; ++seed) {
+    test::Random random(400 + seed);
+    MetaballField field;
+    field.kernel = kCases[seed % std::size(kCases)].kernel;
+    field.level = kCases[seed % std::size(kCases)].level;
+    for (int i = 0; i < 600; ++i) {
+      const double depth = i % 3 == 0 ? random.uniform(-2000, 0) : random.uniform(-30, 30);
+      const double across = 25 + (GetParam() == Projection::perspective ? std::max(-depth, 0.0) : 0.0);
+      const glm::vec3 center(random.uniform(-1, 1) * across, random.uniform(-1, 1) * across, depth);
+      field.balls.push_back({center, static_cast<float>(random.logUniform(0.3, 8)), i % 7 == 6 ? -0.5f : 1.0f,
+                             0x808080, static_cast<std::uint32_t>(i + 1)});
+    }
+    Camera camera;
+    camera.projection = GetParam();
+    camera.target = kOrigin;
+    camera.distance = 70;
+    camera.fovY = GetParam() == Projection::perspective ? 2.2 : 1;
+    expectTrue(field, makeView(camera, {100, 75}, {kOrigin, 2200}), field.allPositive() ? "added" : "hollow");
+  }
+}
+
 TEST_P(FieldTilesTest, HitsAreTheTruthFromWithin) {
   test::Random random(3);
   for (int i = 0; i < 6; ++i) {
