@@ -274,8 +274,10 @@ void measureAgainstBezier(int wanted, int repetitions) {
   const std::array<std::string, 2> methods{"tiles", "bezier"};
   std::array<std::unique_ptr<Renderer>, 2> renderers;
   std::array<Times, 2> times;
+  RendererOptions options;
+  options.timePasses = true;
   for (std::unique_ptr<Renderer>& renderer : renderers) {
-    renderer = std::make_unique<Renderer>(RendererOptions{.timePasses = true});
+    renderer = std::make_unique<Renderer>(options);
     renderer->setPrimitives(surface);
   }
   View view = filling(spheres);
