@@ -182,22 +182,40 @@ HWY_EXPORT(castFieldTile);
 
 namespace {
 
+// How far 0 is from [low, low + kTileSize].
+float outsideTile(float low) {
+  return std::max(std::max(low, -low - kTileSize), 0.0f);
+}
+
+// The balls that a tile's rays can meet: lists go by squares around them.
 void makeTileBalls(const FieldTile& tile, const TileRays& rays, double zStart, std::vector<TileBall>& balls) {
-  balls.resize(tile.list.size());
-  for (std::size_t i = 0; i < balls.size(); ++i) {
-    const BallRecord& r = tile.records[tile.list[i]];
-    TileBall& b = balls[i];
+  // A ray that meets the plane of a ball's centre this far from it passes it at no less than that times the
+  // cosine of its own angle with z.
+  const auto steepest = [&](float slope) {
+    return std::max(std::abs(slope), std::abs(slope + kTileSize * rays.pixelSize));
+  };
+  const float slopeX = steepest(rays.slopeX), slopeY = steepest(rays.slopeY);
+  const float nearer = rays.perspective ? 1 / (1 + slopeX * slopeX + slopeY * slopeY) : 1.0f;
+  constexpr float kRounding = 1e-5f;
+  balls.clear();
+  for (const std::uint32_t index : tile.list) {
+    const BallRecord& r = tile.records[index];
+    const bool fromEye = r.fromEye != 0;
+    TileBall b;
     b.x = static_cast<float>(r.pixelX - rays.cornerX);
     b.y = static_cast<float>(r.pixelY - rays.cornerY);
+    const float aside = outsideTile(-b.x) * r.perPixel, up = outsideTile(-b.y) * r.perPixel;
+    if (!fromEye && (aside * aside + up * up) * nearer > r.support2 * (1 + kRounding)) continue;
     b.z = static_cast<float>(r.centerZ - zStart);
     b.perPixel = r.perPixel;
     b.front = static_cast<float>(static_cast<double>(r.front) - zStart);
-    b.back = b.z - std::sqrt(r.support2);
+    b.back = 2 * b.z - b.front;
     b.support2 = r.support2;
     b.inverse2 = r.inverseSupport2;
     b.coefficient = r.coefficient;
-    b.record = tile.list[i];
-    b.fromEye = r.fromEye != 0;
+    b.record = index;
+    b.fromEye = fromEye;
+    balls.push_back(b);
   }
 }
 
