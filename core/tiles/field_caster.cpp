@@ -109,20 +109,34 @@ Packet packetOf(const TileRays& rays, std::size_t k, double zStart) {
   return p;
 }
 
+// The balls that matter to a tile's rays, measured from where the rays begin; zStart is moved there.
+template <typename Kernel>
+Balls ballsFromFront(Kernel kernel, const FieldTile& tile, std::span<TileBall> balls, const TileRays& rays,
+                     double& zStart) {
+  const Balls whole{balls, tile.slack, false};
+  if (std::any_of(balls.begin(), balls.end(), [](const TileBall& b) { return b.fromEye; })) return whole;
+  const float depth = Front<Kernel>(kernel, balls, rays, static_cast<float>(tile.field->level),
+                                    static_cast<float>(tile.largestSupport))
+                          .depth(tile.slack);
+  if (!(depth > 0)) return whole;
+  zStart -= static_cast<double>(depth);
+  std::size_t kept = 0;
+  for (TileBall& b : balls) {
+    if (b.back > -depth) continue;
+    const BallRecord& record = tile.records[b.record];
+    b.z = static_cast<float>(record.centerZ - zStart);
+    b.front = static_cast<float>(static_cast<double>(record.front) - zStart);
+    balls[kept++] = b;
+  }
+  return {balls.first(kept), tile.slack, true};
+}
+
 template <typename Kernel>
 bool castWith(Kernel kernel, const FieldTile& tile, std::span<TileBall> tileBalls, const TileRays& rays,
-              const PlaneChannels& channels, double zStart, ChordWindow& window, TilePixels& out,
+              const PlaneChannels& channels, double& zStart, ChordWindow& window, TilePixels& out,
               FieldCounts& counts) {
   const F f;
-  const auto level = static_cast<float>(tile.field->level);
-  Balls balls{tileBalls, tile.slack, 0};
-  if (std::none_of(tileBalls.begin(), tileBalls.end(), [](const TileBall& b) { return b.fromEye; })) {
-    const Front<Kernel> front(kernel, tileBalls, rays, level, static_cast<float>(tile.largestSupport));
-    balls.depth = front.depth(tile.slack);
-    const auto left = std::remove_if(tileBalls.begin(), tileBalls.end(),
-                                     [&](const TileBall& b) { return b.back > -balls.depth; });
-    balls.list = {tileBalls.begin(), left};
-  }
+  const Balls balls = ballsFromFront(kernel, tile, tileBalls, rays, zStart);
   if (balls.list.empty()) {
     for (std::size_t k = 0; k < kTilePixels; k += laneCount()) storeBackground(k, channels, out);
     return true;
@@ -135,7 +149,7 @@ bool castWith(Kernel kernel, const FieldTile& tile, std::span<TileBall> tileBall
     if (!Walk<Kernel>(kernel, tile, balls, p, window, brackets[i], counts).firstRoots(hits[i], inside[i]))
       return false;
   }
-  solve(kernel, brackets, kPackets, toleranceOf(tile), level, hits, counts);
+  solve(kernel, brackets, kPackets, toleranceOf(tile), static_cast<float>(tile.field->level), hits, counts);
   for (std::size_t i = 0; i < kPackets; ++i) {
     const std::size_t k = i * laneCount();
     const Packet p = packetOf(rays, k, zStart);
@@ -157,7 +171,7 @@ bool castWith(Kernel kernel, const FieldTile& tile, std::span<TileBall> tileBall
 }
 
 bool castFieldTile(const FieldTile& tile, std::span<TileBall> balls, const TileRays& rays,
-                   const PlaneChannels& channels, double zStart, TilePixels& out, FieldCounts& counts) {
+                   const PlaneChannels& channels, double& zStart, TilePixels& out, FieldCounts& counts) {
   thread_local ChordWindow window(16);
   const Kernel& kernel = tile.field->kernel;
   switch (kernel.shape) {
@@ -253,7 +267,7 @@ bool castField(const FieldTile& tile, const TileRays& rays, const PlaneChannels&
                FieldCounts& counts) {
   // Where the list begins, but not before the near plane.
   const float front = tile.records[tile.list.front()].front + tile.slack;
-  const double zStart = static_cast<double>(front < rays.nearZ ? front : rays.nearZ);
+  double zStart = static_cast<double>(front < rays.nearZ ? front : rays.nearZ);
   thread_local std::vector<TileBall> balls;
   makeTileBalls(tile, rays, zStart, balls);
   if (!HWY_DYNAMIC_DISPATCH(castFieldTile)(tile, balls, rays, channels, zStart, out, counts)) return false;

@@ -45,8 +45,8 @@ class Front {
     float top = 0;  // of the next slabs
     for (;;) {
       while (first < balls_.size() && balls_[first].front - twice_ > -top) ++first;
-      if (first == balls_.size()) return std::numeric_limits<float>::infinity();
-      const float begins = -(balls_[first].front + slack);
+      const float begins = nextBall(first, top, slack);
+      if (begins == std::numeric_limits<float>::infinity()) return begins;
       if (begins > top) top = begins;  // nothing between
       const float slab = std::max(slab_, top * kLeastSlab);
       const std::size_t reached = firstSlab(first, top, slab, slack);
@@ -56,6 +56,15 @@ class Front {
   }
 
  private:
+  // Where the nearest ball begins that has not ended above `top`.
+  float nextBall(std::size_t first, float top, float slack) const {
+    float begins = std::numeric_limits<float>::infinity();
+    for (std::size_t i = first; i < balls_.size() && -(balls_[i].front + slack) < begins; ++i) {
+      if (balls_[i].back <= -top) begins = std::min(begins, -balls_[i].front * (1 - kRounding));
+    }
+    return begins;
+  }
+
   // The first of the slabs of this height below `top` in which the level may be reached.
   std::size_t firstSlab(std::size_t first, float top, float slab, float slack) const {
     const F f;

@@ -34,7 +34,7 @@ struct Packet {
 struct Balls {
   std::span<const TileBall> list;
   float slack;  // how much nearer a later one can be than an earlier one
-  float depth;  // below the plane, before which no ray reaches the level; 0: not looked for
+  bool atPlane;  // whether the rays begin on the plane, and outside; otherwise they begin at the near plane
 };
 
 struct Point {
@@ -85,7 +85,7 @@ class Walk {
     const F f;
     const V far = all(kFar);
     V hit = far;
-    now_ = all(balls_.depth > 0 ? -balls_.depth : packet_.nearZ) * packet_.inverseZ;
+    now_ = balls_.atPlane ? hn::Zero(f) : all(packet_.nearZ) * packet_.inverseZ;
     next_ = far;
     live_ = hn::Not(hn::MaskFromVec(hn::Zero(f)));
     inside_ = hn::MaskFromVec(hn::Zero(f));
@@ -97,7 +97,7 @@ class Walk {
       if (hn::AllFalse(f, live_)) break;
       if (atStart) {
         counts_.rays += hn::CountTrue(f, live_);
-        if (!(balls_.depth > 0)) inside_ = hn::And(live_, fieldAtStart() > hn::Zero(f));
+        if (!balls_.atPlane) inside_ = hn::And(live_, fieldAtStart() > hn::Zero(f));
         atStart = false;
         if (tile_.cut && !hn::AllFalse(f, inside_)) return false;
       }
