@@ -30,13 +30,33 @@ namespace {
 using Molecules = std::vector<std::shared_ptr<const Molecule>>;
 using Objects = std::vector<SceneObject>;
 
+// A file as it was read with some options.
+struct ReadStructure {
+  StructureOptions options;
+  StructureFile file;
+  std::vector<std::string> notes;
+  double seconds = 0;
+};
+
+ReadStructure readFor(const StructureOptions& options, const std::string& file, std::string bytes) {
+  ReadStructure read;
+  read.options = options;
+  Logger logger;
+  {
+    const Timed timed(read.seconds);
+    read.file = readStructureBytes(std::move(bytes), file, options, logger);
+  }
+  read.notes = logger.notes();
+  return read;
+}
+
 class StructurePictures {
  public:
   StructurePictures(const std::string& file, const RenderOptions& options) : file_(file), options_(options) {}
-  Preparation make(std::string bytes);
+  Preparation make(ReadStructure read);
 
  private:
-  Molecules readMolecules(std::string bytes);
+  Molecules moleculesOf(ReadStructure read);
   void requireMemoryFor(const Molecules& molecules) const;
   bool draws(Representation representation) const;
   bool drawsBonds() const;
@@ -53,8 +73,8 @@ class StructurePictures {
   StructureFormat format_ = StructureFormat::mmcif;
 };
 
-Preparation StructurePictures::make(std::string bytes) {
-  const Molecules molecules = readMolecules(std::move(bytes));
+Preparation StructurePictures::make(ReadStructure read) {
+  const Molecules molecules = moleculesOf(std::move(read));
   requireMemoryFor(molecules);
   std::vector<Objects> models;
   for (const auto& molecule : molecules) models.push_back(objectsFor(molecule));
@@ -106,17 +126,13 @@ void StructurePictures::addPicture(Scene scene, int model) {
   made_.pictures.push_back(std::move(picture));
 }
 
-Molecules StructurePictures::readMolecules(std::string bytes) {
+Molecules StructurePictures::moleculesOf(ReadStructure read) {
   Logger logger;
-  StructureFile structure;
-  {
-    const Timed timed(made_.parseSeconds);
-    structure = readStructureBytes(std::move(bytes), file_, options_.structure, logger);
-  }
-  format_ = structure.format;
-  made_.modelCount = structure.modelCount;
+  format_ = read.file.format;
+  made_.modelCount = read.file.modelCount;
+  made_.parseSeconds = read.seconds;
   Molecules molecules;
-  for (Molecule& molecule : structure.models) {
+  for (Molecule& molecule : read.file.models) {
     if (drawsBonds()) {
       const Timed timed(made_.bondsSeconds);
       addMissingBonds(molecule, logger);
@@ -124,7 +140,8 @@ Molecules StructurePictures::readMolecules(std::string bytes) {
     if (draws(Representation::ellipsoids)) noteOddDisplacements(molecule, logger);
     molecules.push_back(std::make_shared<const Molecule>(std::move(molecule)));
   }
-  made_.notes = logger.notes();
+  made_.notes = std::move(read.notes);
+  made_.notes.insert(made_.notes.end(), logger.notes().begin(), logger.notes().end());
   return molecules;
 }
 
@@ -302,13 +319,16 @@ Preparation picturesWithPanels(const std::string& file, const std::string& bytes
                                const RenderOptions& options) {
   const std::vector<PanelPlace> places = placePanels(options.panels.size(), options.size, options.divider);
   Preparation all;
+  ReadStructure read;  // panels mostly show the same atoms
   for (std::size_t i = 0; i < options.panels.size(); ++i) {
     if (options.panels[i].error) {
       for (Picture& picture : all.pictures) picture.panels.push_back(errorPanel(picture.panels.front()));
       continue;
     }
     const RenderOptions own = panelOptions(options, options.panels[i], places[i].picture);
-    Preparation made = StructurePictures(file, own).make(bytes);
+    if (i == 0 || own.structure != read.options) read = readFor(own.structure, file, bytes);
+    Preparation made = StructurePictures(file, own).make(read);
+    read.seconds = 0;
     if (i == 0) {
       all = made;
     } else {
@@ -421,7 +441,7 @@ void requireIds(const std::string& file, double atoms, double placed) {
 
 Preparation structurePictures(const std::string& file, std::string bytes, const RenderOptions& options) {
   if (!options.panels.empty()) return picturesWithPanels(file, bytes, options);
-  return StructurePictures(file, options).make(std::move(bytes));
+  return StructurePictures(file, options).make(readFor(options.structure, file, std::move(bytes)));
 }
 
 }  // namespace meniscus

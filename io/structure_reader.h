@@ -30,6 +30,7 @@ struct StructureOptions {
   bool hydrogens = true;
   Waters waters = Waters::on;
   std::string select;  ///< gemmi CID selection ("//A/10-20/CA[C]"); empty = everything
+  bool operator==(const StructureOptions&) const = default;
 };
 
 enum class StructureFormat : std::uint8_t { pdb, mmcif, binaryCif };
