@@ -11,7 +11,7 @@ namespace meniscus::tiles {
 
 /// Of all rays together.
 struct FieldCounts {
-  std::uint64_t rays = 0;            ///< that met a support
+  std::uint64_t rays = 0;            ///< that met a support, in tiles that may show something
   std::uint64_t intervals = 0;       ///< between two entries or exits, looked at by a bound of the field
   std::uint64_t pieces = 0;          ///< polynomials written down
   std::uint64_t iterations = 0;      ///< of the root finder
