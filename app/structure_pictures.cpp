@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <glm/trigonometric.hpp>
 #include <iterator>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -319,16 +320,17 @@ Preparation picturesWithPanels(const std::string& file, const std::string& bytes
                                const RenderOptions& options) {
   const std::vector<PanelPlace> places = placePanels(options.panels.size(), options.size, options.divider);
   Preparation all;
-  ReadStructure read;  // panels mostly show the same atoms
+  std::optional<ReadStructure> read;  // panels mostly show the same atoms
   for (std::size_t i = 0; i < options.panels.size(); ++i) {
     if (options.panels[i].error) {
       for (Picture& picture : all.pictures) picture.panels.push_back(errorPanel(picture.panels.front()));
       continue;
     }
     const RenderOptions own = panelOptions(options, options.panels[i], places[i].picture);
-    if (i == 0 || own.structure != read.options) read = readFor(own.structure, file, bytes);
-    Preparation made = StructurePictures(file, own).make(read);
-    read.seconds = 0;
+    if (!read || own.structure != read->options) read = readFor(own.structure, file, bytes);
+    const bool last = i + 1 == options.panels.size();
+    Preparation made = StructurePictures(file, own).make(last ? std::move(*read) : *read);
+    read->seconds = 0;
     if (i == 0) {
       all = made;
     } else {

@@ -19,7 +19,7 @@ struct FieldCounts {
   std::uint64_t splits = 0;          ///< intervals halved because several roots were possible
   std::uint64_t grazing = 0;         ///< rays with an interval that could not be split any more
   std::uint64_t notConverged = 0;
-  std::uint64_t windowGrowths = 0;  ///< lists of balls on a ray that had to become longer
+  std::uint64_t mostChords = 0;  ///< that a packet of rays had to keep at once
   void add(const FieldCounts& other);
 };
 

@@ -7,6 +7,7 @@
 #define MENISCUS_TILES_FIELD_WALK_INL
 #endif
 
+#include <algorithm>
 #include <limits>
 #include <span>
 
@@ -20,6 +21,8 @@ namespace meniscus::tiles::HWY_NAMESPACE {
 namespace {
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
+// Steps that a ray waits for those beside it: it keeps the chords that they pass meanwhile.
+constexpr int kPatience = 16;
 
 // A packet of rays in its tile's frame: t = 0 on the plane that the tile's balls are measured from.
 struct Packet {
@@ -91,6 +94,7 @@ class Walk {
     inside_ = hn::MaskFromVec(hn::Zero(f));
     bool atStart = true;
     M stopped = inside_;  // rays that wait on an interval that may hold a root until all others do
+    int waited = 0;
     for (;;) {
       load();
       live_ = hn::And(live_, next_ < far);
@@ -104,10 +108,12 @@ class Walk {
       stopped = hn::Or(stopped, hn::And(live_, hn::Or(inside_, boundOnInterval(stopped) > all(level_))));
       stopped = hn::And(stopped, live_);
       const M moving = hn::AndNot(stopped, live_);
-      if (!hn::AllFalse(f, moving)) {
+      if (!hn::AllFalse(f, moving) && (hn::AllFalse(f, stopped) || ++waited <= kPatience)) {
         advance(moving);
         continue;
       }
+      waited = 0;
+      counts_.mostChords = std::max(counts_.mostChords, std::uint64_t{count_});
       while (!hn::AllFalse(f, stopped)) stopped = lookInto(stopped, hit);
       if (hn::AllFalse(f, live_)) break;
       advance(live_);
@@ -144,10 +150,7 @@ class Walk {
       const V enter = hn::IfThenElse(met, middle - half, all(kFar)),
               leave = hn::IfThenElse(met, middle + half, all(-kFar));
       if (hn::AllFalse(f, leave > now_)) continue;
-      if (count_ == window_.capacity) {
-        window_.grow();
-        ++counts_.windowGrowths;
-      }
+      if (count_ == window_.capacity) window_.grow();
       const std::size_t at = count_ * laneCount();
       hn::Store(middle, f, window_.middle + at);
       hn::Store(half2, f, window_.half2 + at);

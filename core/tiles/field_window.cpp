@@ -22,7 +22,7 @@ void FieldCounts::add(const FieldCounts& other) {
   splits += other.splits;
   grazing += other.grazing;
   notConverged += other.notConverged;
-  windowGrowths += other.windowGrowths;
+  mostChords = std::max(mostChords, other.mostChords);
 }
 
 ChordWindow::ChordWindow(std::size_t lanes) : lanes_(lanes) {

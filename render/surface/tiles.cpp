@@ -103,7 +103,7 @@ SurfaceStats Tiles::takeStats() {
   stats.notConverged = counts.notConverged;
   stats.details = {{"intervals bounded", static_cast<double>(counts.intervals)},
                    {"intervals halved", static_cast<double>(counts.splits)},
-                   {"windows grown", static_cast<double>(counts.windowGrowths)},
+                   {"most balls kept at once", static_cast<double>(counts.mostChords)},
                    {"most bytes per pixel", mostBytesPerPixel_}};
   mostBytesPerPixel_ = 0;
   return stats;

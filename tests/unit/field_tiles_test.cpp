@@ -161,6 +161,36 @@ TEST_P(FieldTilesTest, WhatIsNotSeenInFrontCostsNoDigits) {
   EXPECT_GT(errors.compared, 5000u);
 }
 
+// Rays that have met something wait for those beside them, but not while these pass through balls without
+// end.
+TEST_P(FieldTilesTest, NoRayWaitsForAll) {
+  MetaballField field;
+  field.level = 0.5;
+  for (int i = 0; i < 400; ++i)  // 10 at a place, all rays through all of them
+    field.balls.push_back({{0, 0, -5 - 0.8f * static_cast<float>(i)}, 4, 0.04f, 0x808080, 1});
+  field.balls.push_back({{0, 0, -335}, 6, 1, 0x808080, 2});
+  for (int i = 0; i < 36; ++i)
+    field.balls.push_back(
+        {{static_cast<float>(i % 6) * 0.7f - 1.75f, static_cast<float>(i / 6) * 0.7f - 1.75f, 10},
+         0.4f,
+         1,
+         0,
+         3});
+  Camera camera;
+  camera.projection = GetParam();
+  camera.target = kOrigin;
+  camera.distance = 1e5;
+  camera.fovY = 4 / camera.distance;
+  const View view = makeView(camera, {40, 40}, {kOrigin, 400});
+  FieldCounts counts;
+  const HitErrors errors =
+      compareHits(cast(field, targetOf(view), &counts), traceReference(field, kOrigin, view));
+  EXPECT_EQ(errors.missed, 0u);
+  EXPECT_EQ(errors.falseHits, 0u);
+  EXPECT_GT(errors.compared, 1400u);
+  EXPECT_LT(counts.mostChords, 100u);
+}
+
 TEST_P(FieldTilesTest, HitsAreTheTruthFromWithin) {
   test::Random random(3);
   for (int i = 0; i < 6; ++i) {
