@@ -75,6 +75,11 @@ View filling(const Primitives& primitives) {
   return makeView(camera, kSize, bounds);
 }
 
+void turn(View& view, double angle) {
+  view.rotation = glm::dmat3(glm::rotate(glm::dmat4(view.rotation), angle, glm::dvec3(0, 1, 0)));
+}
+constexpr double kDegree = 0.01745;
+
 /// Splats into the channels that the tiles fill.
 class Splatting {
  public:
@@ -227,9 +232,9 @@ void measureFrames(int wanted, int repetitions) {
   std::vector<Kind> kinds;
   const std::pair<const char*, const Primitives*> scenes[] = {{"spheres", &spheres}, {"surface", &surface}};
   for (const auto& [name, scene] : scenes) {
-    kinds.push_back({fmt::format("{}, turning", name), scene, 0.01745, true});
+    kinds.push_back({fmt::format("{}, turning", name), scene, kDegree, true});
     kinds.push_back({fmt::format("{}, still", name), scene, 0, true});
-    kinds.push_back({fmt::format("{}, turning, effects by shaders", name), scene, 0.01745, false});
+    kinds.push_back({fmt::format("{}, turning, effects by shaders", name), scene, kDegree, false});
   }
   const std::size_t atoms = spheres.spheres.size();
   for (const Kind& kind : kinds) {
@@ -243,7 +248,7 @@ void measureFrames(int wanted, int repetitions) {
       AllTimes times;
       std::map<std::string, double> passes;
       for (int repetition = -1; repetition < repetitions; ++repetition) {
-        view.rotation = glm::dmat3(glm::rotate(glm::dmat4(view.rotation), kind.turn, glm::dvec3(0, 1, 0)));
+        turn(view, kind.turn);
         NullSink sink;
         record(times, "frame", repetition >= 0,
                [&] { renderer.renderPicture(view, Lighting{}, {}, settings, PixelFormat::rgba8, sink); });
@@ -282,7 +287,7 @@ void measureAgainstBezier(int wanted, int repetitions) {
   }
   View view = filling(spheres);
   for (int repetition = -1; repetition < repetitions; ++repetition) {
-    view.rotation = glm::dmat3(glm::rotate(glm::dmat4(view.rotation), 0.01745, glm::dvec3(0, 1, 0)));
+    turn(view, kDegree);
     for (std::size_t m = 0; m < methods.size(); ++m) {
       RenderSettings settings;
       settings.samples = 1;

@@ -105,8 +105,9 @@ class Walk {
         atStart = false;
         if (tile_.cut && !hn::AllFalse(f, inside_)) return false;
       }
-      stopped = hn::Or(stopped, hn::And(live_, hn::Or(inside_, boundOnInterval(stopped) > all(level_))));
-      stopped = hn::And(stopped, live_);
+      const M looked = hn::AndNot(stopped, live_);
+      counts_.intervals += hn::CountTrue(f, looked);
+      stopped = hn::Or(stopped, hn::And(looked, hn::Or(inside_, boundOnInterval() > all(level_))));
       const M moving = hn::AndNot(stopped, live_);
       if (!hn::AllFalse(f, moving) && (hn::AllFalse(f, stopped) || ++waited <= kPatience)) {
         advance(moving);
@@ -182,9 +183,8 @@ class Walk {
 
   // An upper bound of the sum of all q f on [now, next]: each ball at its nearest point; what takes away
   // counts nothing.
-  HWY_INLINE V boundOnInterval(M known) {
+  HWY_INLINE V boundOnInterval() const {
     const F f;
-    counts_.intervals += hn::CountTrue(f, hn::AndNot(known, live_));
     const V zero = hn::Zero(f);
     V sum = zero;
     for (std::size_t i = 0; i < count_; ++i) {

@@ -88,6 +88,17 @@ void expectTrue(const MetaballField& field, const View& view, const char* what) 
   EXPECT_GT(errors.compared, 100u) << what;
 }
 
+// The middle of a scene that reaches `reach` [Å] in front and behind, from so far away that rays are all but
+// parallel; height: of the picture [Å].
+View viewFromAfar(Projection projection, ImageSize size, double height, double distance, double reach) {
+  Camera camera;
+  camera.projection = projection;
+  camera.target = kOrigin;
+  camera.distance = distance;
+  camera.fovY = height / distance;
+  return makeView(camera, size, {kOrigin, reach});
+}
+
 class FieldTilesTest : public testing::TestWithParam<Projection> {
  protected:
   void TearDown() override { useInstructionSet(""); }
@@ -148,12 +159,7 @@ TEST_P(FieldTilesTest, WhatIsNotSeenInFrontCostsNoDigits) {
     const glm::vec3 center(random.uniform(-7, 7), random.uniform(-7, 7), 1e5 + random.uniform(-20, 20));
     field.balls.push_back({center, 0.2f, 0.4f, 0x808080, 1000 + i});
   }
-  Camera camera;
-  camera.projection = GetParam();
-  camera.target = kOrigin;
-  camera.distance = 4e6;
-  camera.fovY = 20 / camera.distance;
-  const View view = makeView(camera, {160, 120}, {kOrigin, 1.1e5});
+  const View view = viewFromAfar(GetParam(), {160, 120}, 20, 4e6, 1.1e5);
   const HitErrors errors = compareHits(cast(field, targetOf(view)), traceReference(field, kOrigin, view));
   EXPECT_EQ(errors.missed, 0u);
   EXPECT_EQ(errors.falseHits, 0u);
@@ -176,12 +182,7 @@ TEST_P(FieldTilesTest, NoRayWaitsForAll) {
          1,
          0,
          3});
-  Camera camera;
-  camera.projection = GetParam();
-  camera.target = kOrigin;
-  camera.distance = 1e5;
-  camera.fovY = 4 / camera.distance;
-  const View view = makeView(camera, {40, 40}, {kOrigin, 400});
+  const View view = viewFromAfar(GetParam(), {40, 40}, 4, 1e5, 400);
   FieldCounts counts;
   const HitErrors errors =
       compareHits(cast(field, targetOf(view), &counts), traceReference(field, kOrigin, view));
