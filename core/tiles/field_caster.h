@@ -13,6 +13,7 @@ namespace meniscus::tiles {
 struct FieldCounts {
   std::uint64_t rays = 0;            ///< that met a support, in tiles that may show something
   std::uint64_t intervals = 0;       ///< between two entries or exits, looked at by a bound of the field
+  std::uint64_t stretches = 0;       ///< of several intervals, looked at likewise by a packet of rays
   std::uint64_t pieces = 0;          ///< polynomials written down
   std::uint64_t iterations = 0;      ///< of the root finder
   std::uint64_t mostIterations = 0;  ///< of one ray

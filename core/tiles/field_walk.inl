@@ -8,6 +8,7 @@
 #endif
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <span>
 
@@ -23,6 +24,8 @@ namespace {
 constexpr float kFar = std::numeric_limits<float>::infinity();
 // Steps that a ray waits for those beside it: it keeps the chords that they pass meanwhile.
 constexpr int kPatience = 16;
+// From so many chords on, rays try to pass many entries and exits at once.
+constexpr std::size_t kManyChords = 48;
 
 // A packet of rays in its tile's frame: t = 0 on the plane that the tile's balls are measured from.
 struct Packet {
@@ -78,7 +81,8 @@ class Walk {
         brackets_(brackets),
         counts_(counts),
         level_(static_cast<float>(tile.field->level)),
-        tolerance_(toleranceOf(tile)) {
+        tolerance_(toleranceOf(tile)),
+        stretch_(all(static_cast<float>(tile.largestSupport))) {
     brackets.clear(kernel.degree());
   }
 
@@ -96,7 +100,7 @@ class Walk {
     M stopped = inside_;  // rays that wait on an interval that may hold a root until all others do
     int waited = 0;
     for (;;) {
-      load();
+      load([&] { return next_; });
       live_ = hn::And(live_, next_ < far);
       if (hn::AllFalse(f, live_)) break;
       if (atStart) {
@@ -105,19 +109,24 @@ class Walk {
         atStart = false;
         if (tile_.cut && !hn::AllFalse(f, inside_)) return false;
       }
+      if (count_ >= kManyChords) {
+        passMany(hn::AndNot(stopped, live_));
+        live_ = hn::And(live_, next_ < far);
+        if (hn::AllFalse(f, live_)) break;
+      }
       const M looked = hn::AndNot(stopped, live_);
       counts_.intervals += hn::CountTrue(f, looked);
       stopped = hn::Or(stopped, hn::And(looked, hn::Or(inside_, boundOnInterval() > all(level_))));
       const M moving = hn::AndNot(stopped, live_);
       if (!hn::AllFalse(f, moving) && (hn::AllFalse(f, stopped) || ++waited <= kPatience)) {
-        advance(moving);
+        advance(moving, next_);
         continue;
       }
       waited = 0;
       counts_.mostChords = std::max(counts_.mostChords, std::uint64_t{count_});
       while (!hn::AllFalse(f, stopped)) stopped = lookInto(stopped, hit);
       if (hn::AllFalse(f, live_)) break;
-      advance(live_);
+      advance(live_, next_);
     }
     insideOut = inside_;
     hitOut = hit;
@@ -133,13 +142,14 @@ class Walk {
     return hn::IfThenElse(enter > now, enter, hn::IfThenElse(leave > now, leave, all(kFar)));
   }
 
-  // Takes from the list what can begin before the next event of any ray.
-  void load() {
+  // Takes from the list what can begin before end() of any ray; to be asked again after each ball.
+  template <typename End>
+  void load(End end) {
     const F f;
-    const auto zOfNext = [&] {  // from which on a ball may begin before the next event
-      return hn::IfThenElse(live_, packet_.direction.z * next_, all(kFar)) - all(balls_.slack);
+    const auto zOfEnd = [&] {  // from which on a ball may begin before that
+      return hn::IfThenElse(live_, packet_.direction.z * end(), all(kFar)) - all(balls_.slack);
     };
-    V z = zOfNext();
+    V z = zOfEnd();
     for (; taken_ < balls_.list.size(); ++taken_) {
       const TileBall& b = balls_.list[taken_];
       if (hn::AllTrue(f, z >= all(b.front))) break;
@@ -162,7 +172,7 @@ class Walk {
       window_.ball[count_] = static_cast<std::uint32_t>(taken_);
       ++count_;
       next_ = hn::Min(next_, eventAfter(now_, enter, leave));
-      z = zOfNext();
+      z = zOfEnd();
     }
   }
 
@@ -195,6 +205,33 @@ class Walk {
       sum = sum + all(window_.coefficient[i]) * kernel_.value(w);
     }
     return sum * all(1.000002f);  // rounding must not make it less than the polynomial
+  }
+
+  // Whether the field keeps its sign on [now, end], which may hold entries and exits: each ball at its nearest
+  // point if it could change the sign, otherwise at its farthest.
+  M keepsSign(V end) const {
+    const F f;
+    const V zero = hn::Zero(f);
+    V towards = zero, away = zero;  // a change of sign
+    for (std::size_t i = 0; i < count_; ++i) {
+      const V middle = chord(window_.middle, i), half2 = chord(window_.half2, i);
+      const V a = now_ - middle, b = end - middle;
+      const V nearest = hn::Min(hn::Max(zero, a), b);
+      const V farthest2 = hn::Max(a * a, b * b);
+      const auto valueAt = [&](V t2) {
+        return all(std::abs(window_.coefficient[i])) *
+               kernel_.value(hn::Max((half2 - t2) * all(window_.inverse2[i]), zero));
+      };
+      const V most = valueAt(nearest * nearest), least = valueAt(farthest2);
+      const M adds = window_.coefficient[i] > 0 ? hn::Not(inside_) : inside_;
+      towards = towards + hn::IfThenElse(adds, most, zero);
+      away = away + hn::IfThenElse(adds, zero, least);
+    }
+    // Of a sum of so many, rounded.
+    const float rounding = 1.2e-7f * static_cast<float>(count_ + 8);
+    towards = towards * all(1 + rounding);
+    away = away * all(1 - rounding);
+    return towards - away < hn::IfThenElse(inside_, all(-level_), all(level_));
   }
 
   // Writes down the polynomials of [now, next] of the candidates, negated where the ray began inside. Returns
@@ -314,10 +351,31 @@ class Walk {
     live_ = hn::AndNot(single, live_);
   }
 
-  // Some rays to their next event; drops the chords that every ray has left.
-  void advance(M moving) {
+  // Takes some rays as far as looks at whole stretches reach, however many entries and exits these hold: twice as
+  // far each time until a look fails, then half as far.
+  void passMany(M rays) {
     const F f;
-    now_ = hn::IfThenElse(moving, next_, now_);
+    const V half = all(0.5f), twice = all(2.0f);
+    stretch_ = hn::Max(stretch_, twice * (next_ - now_));
+    M failed = hn::MaskFromVec(hn::Zero(f));
+    for (;;) {
+      const V end = now_ + stretch_;
+      rays = hn::And(rays, end > next_);
+      if (hn::AllFalse(f, rays)) return;
+      const V loaded = hn::IfThenElse(rays, end, next_);
+      load([&] { return loaded; });
+      ++counts_.stretches;
+      const M passed = hn::And(rays, keepsSign(end));
+      failed = hn::Or(failed, hn::AndNot(passed, rays));
+      stretch_ = hn::IfThenElse(rays, stretch_ * hn::IfThenElse(failed, half, twice), stretch_);
+      if (!hn::AllFalse(f, passed)) advance(passed, end);
+    }
+  }
+
+  // Some rays to where they have been looked at; drops the chords that every ray has left.
+  void advance(M moving, V reached) {
+    const F f;
+    now_ = hn::IfThenElse(moving, reached, now_);
     next_ = all(kFar);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < count_; ++i) {
@@ -348,6 +406,7 @@ class Walk {
   Brackets& brackets_;
   FieldCounts& counts_;
   float level_, tolerance_;
+  V stretch_;                          // that each ray may pass at once
   std::size_t taken_ = 0, count_ = 0;  // of the list; of the window
   V now_, next_;                       // the interval that is looked at
   M live_, inside_;

@@ -16,6 +16,7 @@ constexpr std::align_val_t kAlignment{64};
 void FieldCounts::add(const FieldCounts& other) {
   rays += other.rays;
   intervals += other.intervals;
+  stretches += other.stretches;
   pieces += other.pieces;
   iterations += other.iterations;
   mostIterations = std::max(mostIterations, other.mostIterations);

@@ -102,6 +102,7 @@ SurfaceStats Tiles::takeStats() {
   stats.grazing = counts.grazing;
   stats.notConverged = counts.notConverged;
   stats.details = {{"intervals bounded", static_cast<double>(counts.intervals)},
+                   {"longer stretches bounded", static_cast<double>(counts.stretches)},
                    {"intervals halved", static_cast<double>(counts.splits)},
                    {"most balls kept at once", static_cast<double>(counts.mostChords)},
                    {"most bytes per pixel", mostBytesPerPixel_}};

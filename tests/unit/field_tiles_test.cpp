@@ -3,6 +3,7 @@
 
 #include "core/tiles/field_tiles.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -299,6 +300,47 @@ TEST_P(FieldTilesTest, AnyNumberOfBallsMayOverlap) {
       compareHits(cast(field, targetOf(view), &counts), traceReference(field, kOrigin, view));
   EXPECT_EQ(errors.missed + errors.falseHits, 0u);
   EXPECT_LE(errors.relativeRms, 1e-5);
+}
+
+// Balls almost in one place, some of which may take away, seen from outside and from within: a ray passes
+// their entries and exits in a few steps, and not one by one.
+TEST_P(FieldTilesTest, ManyEntriesArePassedAtOnce) {
+  struct Heap {
+    double spread;
+    double level;
+    int hollow;
+    bool within;
+  };
+  for (const Heap& heap : {Heap{1e-3, 0.5, 0, false}, Heap{1, 0.5, 0, false}, Heap{1, 150, 0, false},
+                           Heap{0.5, 10, 3, false}, Heap{0.5, 10, 0, true}}) {
+    SCOPED_TRACE(fmt::format("{} A, level {}, {}", heap.spread, heap.level, heap.within));
+    constexpr std::uint32_t kBalls = 500;
+    MetaballField field;
+    field.level = heap.level;
+    test::Random random(7);
+    for (std::uint32_t i = 1; i <= kBalls; ++i) {
+      const bool takes = heap.hollow > 0 && i % static_cast<std::uint32_t>(heap.hollow) == 0;
+      field.balls.push_back({glm::vec3(random.inBox(heap.spread)), 4, takes ? -1.0f : 1.0f, 0xFFFFFF, i});
+    }
+    View view = test::viewOfBall(GetParam(), {24, 16}, kOrigin, 5);
+    if (heap.within) {
+      Camera camera;
+      camera.projection = GetParam();
+      camera.target = kOrigin;
+      camera.distance = 0.1;
+      camera.fovY = 1;
+      view = makeView(camera, {24, 16}, {kOrigin, 6});
+    }
+    FieldCounts counts;
+    const HitErrors errors =
+        compareHits(cast(field, targetOf(view), &counts), traceReference(field, kOrigin, view));
+    EXPECT_EQ(errors.missed + errors.falseHits, 0u);
+    EXPECT_LE(errors.relativeRms, 1e-5);
+    EXPECT_GT(errors.compared, 30u);
+    EXPECT_LT(counts.intervals, 8 * counts.rays);
+    EXPECT_LT(counts.pieces, 4 * counts.rays);
+    EXPECT_LT(counts.stretches, 10 * counts.rays);
+  }
 }
 
 // A ball of one colour beside one of another: between them the colour is in between, by squares.
