@@ -69,13 +69,13 @@ void addPrimitives(const PictureReport& panel, PictureReport& report) {
   report.quadricBytes += panel.quadricBytes;
 }
 
-// Where every copy's quadrics are needed by themselves.
-void requireMemoryForCopies(const PictureReport& picture) {
-  const auto atoms = static_cast<double>(picture.spheres + picture.ellipsoids);
-  const double bytes = atoms * bytesPerAtom(picture.ellipsoids > 0  ? Representation::ellipsoids
-                                            : picture.cylinders > 0 ? Representation::licorice
-                                                                    : Representation::spacefill);
-  requireMemory(picture.input, static_cast<double>(picture.atoms), atoms, bytes);
+// Where every copy's quadrics are needed by themselves. input: of so many atoms.
+void requireMemoryForCopies(const std::string& input, std::size_t atoms, const QuadricCounts& placed) {
+  const auto drawn = static_cast<double>(placed.spheres + placed.ellipsoids);
+  const double bytes = drawn * bytesPerAtom(placed.ellipsoids > 0  ? Representation::ellipsoids
+                                            : placed.cylinders > 0 ? Representation::licorice
+                                                                   : Representation::spacefill);
+  requireMemory(input, static_cast<double>(atoms), drawn, bytes);
 }
 
 std::size_t bytesOf(ImageSize size) {
@@ -229,7 +229,9 @@ PictureReport PictureDrawer::render(Picture& picture, RowSink& sink, const Pixel
     settings.trace.environmentMap = environments_.at(options.environmentFile);
   progress_.start(label);
   Renderer& draw = renderer();
-  if (!primitives->units.empty() && draw.drawsCopiesApart(settings)) requireMemoryForCopies(report);
+  draw.setCopyGuard([input = report.input, atoms = report.atoms](const QuadricCounts& placed) {
+    requireMemoryForCopies(input, atoms, placed);
+  });
   show(std::move(primitives));
   draw.setLabels(std::move(labels), options.labelColors);
   draw.setPreview(layout.format == PixelFormat::rgba8 ? preview : PicturePreview{});

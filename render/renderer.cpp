@@ -60,9 +60,8 @@ void Renderer::setPrimitives(std::shared_ptr<const Primitives> primitives) {
   impl_->pool.trim();
 }
 
-bool Renderer::drawsCopiesApart(const RenderSettings& settings) const {
-  return settings.occlusion.on || settings.trace.any() ||
-         chooseQuadrics(settings.quadrics).method == QuadricMethod::splat;
+void Renderer::setCopyGuard(CopyGuard guard) {
+  impl_->copyGuard = std::move(guard);
 }
 
 void Renderer::setLabels(std::vector<LabelSprite> labels, const LabelColors& colors) {

@@ -47,6 +47,9 @@ struct PicturePreview {
   std::function<void(int samples, std::span<const std::byte> rows)> show;
 };
 
+/// Gets the number of quadrics that copies of units come to.
+using CopyGuard = std::function<void(const QuadricCounts&)>;
+
 /// Needs a current OpenGL 4.5 core context for its whole life.
 class Renderer {
  public:
@@ -57,9 +60,9 @@ class Renderer {
   /// finite.
   void setPrimitives(std::shared_ptr<const Primitives> primitives);
 
-  /// Whether a picture with these settings needs every copy of the primitives' units by itself, which takes
-  /// the memory of copiesApart(): only casting from tiles does without.
-  bool drawsCopiesApart(const RenderSettings& settings) const;
+  /// From now on called before copies of units are put into memory one by one (casting from tiles does
+  /// without), with how many quadrics that makes. What it throws ends the picture.
+  void setCopyGuard(CopyGuard guard);
 
   /// Labels of the pictures from now on.
   void setLabels(std::vector<LabelSprite> labels, const LabelColors& colors);

@@ -12,7 +12,9 @@
 namespace meniscus {
 
 void Renderer::Impl::takePrimitives() {
-  splatQuadrics.setPrimitives(primitives, [this]() -> const Primitives& { return *apart(); });
+  splatQuadrics.setPrimitives(
+      primitives, [this]() -> const Primitives& { return *apart(); },
+      [this](const Primitives& balls) { return eachCopyOf(balls); });
   tileQuadrics.setPrimitives(primitives);
   glslTileQuadrics.setPrimitives(primitives);
 }
@@ -31,11 +33,15 @@ void Renderer::Impl::prepare(const View& view, QuadricMethod method, bool levelO
   if (!viewUniforms.object) viewUniforms = gl::Buffer::updatable(sizeof(f32::ViewBlock));
 }
 
+Primitives Renderer::Impl::eachCopyOf(const Primitives& some) const {
+  if (copyGuard) copyGuard(some.counts());
+  return meniscus::copiesApart(some);
+}
+
 const std::shared_ptr<const Primitives>& Renderer::Impl::apart() {
   if (!copiesApart) {
-    copiesApart = primitives->units.empty()
-                      ? primitives
-                      : std::make_shared<const Primitives>(meniscus::copiesApart(*primitives));
+    copiesApart =
+        primitives->units.empty() ? primitives : std::make_shared<const Primitives>(eachCopyOf(*primitives));
   }
   return copiesApart;
 }

@@ -128,6 +128,7 @@ struct Renderer::Impl {
   std::vector<std::byte> band;
   effects::LightSum lightSum;
   std::shared_ptr<const Primitives> primitives = std::make_shared<Primitives>();
+  CopyGuard copyGuard;
   // The same; made when they are wanted first.
   std::shared_ptr<const Primitives> copiesApart, withoutSurfaces;
   RenderStats stats;
@@ -140,6 +141,7 @@ struct Renderer::Impl {
   // To the ways to draw quadrics.
   void takePrimitives();
   void prepare(const View& view, QuadricMethod method, bool levelOfDetail, const SurfaceSettings& surface);
+  Primitives eachCopyOf(const Primitives& some) const;
   // For what draws no copies: all that is not cast from tiles.
   const std::shared_ptr<const Primitives>& apart();
   f32::ViewBlock setView(const View& view, const Tile& tile, glm::vec2 sampleShift);

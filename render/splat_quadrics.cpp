@@ -26,9 +26,11 @@ double largestRadius(const Primitives& primitives) {
 
 }  // namespace
 
-void SplatQuadrics::setPrimitives(std::shared_ptr<const Primitives> primitives, Apart apart) {
+void SplatQuadrics::setPrimitives(std::shared_ptr<const Primitives> primitives, Apart apart,
+                                  EachCopy eachCopy) {
   primitives_ = std::move(primitives);
   apart_ = std::move(apart);
+  eachCopy_ = std::move(eachCopy);
   largest_.reset();
   levels_ = nullptr;
   uploaded_.clear();
@@ -58,7 +60,7 @@ const QuadricBuffers& SplatQuadrics::upload(const tiles::TileTarget& target) {
     buffers.upload(apart_());
   } else {
     const Primitives& balls = *levels_->level(level).primitives;
-    buffers.upload(balls.units.empty() ? balls : copiesApart(balls));
+    buffers.upload(balls.units.empty() ? balls : eachCopy_(balls));
   }
   return uploaded_.emplace(level, std::move(buffers)).first->second;
 }

@@ -18,9 +18,11 @@ namespace meniscus {
 class SplatQuadrics {
  public:
   using Apart = std::function<const Primitives&()>;
+  using EachCopy = std::function<Primitives(const Primitives&)>;
 
-  /// What to draw; gives up what was uploaded. apart: the same primitives without units.
-  void setPrimitives(std::shared_ptr<const Primitives> primitives, Apart apart);
+  /// What to draw; gives up what was uploaded. apart: the same primitives without units; eachCopy: of balls
+  /// that stand for them.
+  void setPrimitives(std::shared_ptr<const Primitives> primitives, Apart apart, EachCopy eachCopy);
 
   /// What stands for the quadrics in such a view, which is uploaded if it is not there yet.
   const QuadricBuffers& upload(const tiles::TileTarget& target);
@@ -35,6 +37,7 @@ class SplatQuadrics {
 
   std::shared_ptr<const Primitives> primitives_;
   Apart apart_;
+  EachCopy eachCopy_;
   std::optional<double> largest_;                // radius [Å]; found out when it is wanted first
   std::shared_ptr<tiles::DetailLevels> levels_;  // none before something may be thinned
   std::map<int, QuadricBuffers> uploaded_;       // by level

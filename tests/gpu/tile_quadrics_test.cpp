@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "render/renderer.h"
 #include "tests/support/gl_fixture.h"
@@ -117,10 +118,13 @@ TEST_F(TileQuadricsTest, CopiesLookAsEachByItself) {
     if (each) scene = apart;
     Renderer renderer;
     renderer.setPrimitives(scene);
-    EXPECT_EQ(renderer.drawsCopiesApart(settings),
-              settings.quadrics == QuadricMethod::splat || settings.occlusion.on || settings.trace.any());
+    std::size_t guarded = 0;
+    renderer.setCopyGuard([&](const QuadricCounts& counts) { guarded += counts.all(); });
     test::MemorySink sink;
     renderer.renderPicture(view, Lighting{}, {}, settings, PixelFormat::rgba8, sink);
+    const bool copied =
+        settings.quadrics == QuadricMethod::splat || settings.occlusion.on || settings.trace.any();
+    EXPECT_EQ(guarded, copied && !each ? apart->counts().all() : 0);
     return sink.bytes;
   };
   RenderSettings settings = test::withSamples(1, QuadricMethod::tiles);
@@ -149,9 +153,14 @@ TEST_F(TileQuadricsTest, SmallOnesAreTheSameBallsHoweverDrawn) {
   auto scene = std::make_shared<Primitives>(*copiesOfAChain(90, 100));
   static_cast<Quadrics&>(*scene) = *test::randomSpheres(300, 11);
   scene->units.front().cylinders.clear();  // as long as the chain
+  std::size_t guarded = 0, most = 5000;
   const auto drawn = [&](ImageSize size, const RenderSettings& settings, RenderStats& stats) {
     Renderer renderer;
     renderer.setPrimitives(scene);
+    renderer.setCopyGuard([&](const QuadricCounts& counts) {
+      guarded = counts.all();
+      if (guarded > most) throw std::runtime_error("too many: " + std::to_string(guarded));
+    });
     test::MemorySink sink;
     renderer.renderPicture(test::viewOf(copiesApart(*scene), size), Lighting{}, {}, settings,
                            PixelFormat::rgba8, sink);
@@ -168,6 +177,7 @@ TEST_F(TileQuadricsTest, SmallOnesAreTheSameBallsHoweverDrawn) {
   RenderStats stats, others;
   const std::vector<std::byte> splatted = drawn({24, 18}, settings, stats);
   EXPECT_EQ(thinned(stats), 2) << "the picture's and the shadow map's";
+  EXPECT_GT(guarded, 90u) << "only balls that stand for others are put into memory copy by copy";
   for (const ResourceStats& buffer : stats.buffers)
     EXPECT_EQ(buffer.name, "balls that stand for others") << buffer.bytes;
   for (const QuadricMethod method : {QuadricMethod::tiles, QuadricMethod::tilesGlsl}) {
@@ -175,14 +185,17 @@ TEST_F(TileQuadricsTest, SmallOnesAreTheSameBallsHoweverDrawn) {
     const std::vector<std::byte> cast = drawn({24, 18}, settings, others);
     EXPECT_EQ(thinned(others), 2);
     ASSERT_EQ(cast.size(), splatted.size());
-    int most = 0;
+    int apart = 0;
     for (std::size_t i = 0; i < cast.size(); ++i)
-      most = std::max(most, std::abs(std::to_integer<int>(cast[i]) - std::to_integer<int>(splatted[i])));
-    EXPECT_LE(most, 2);
+      apart = std::max(apart, std::abs(std::to_integer<int>(cast[i]) - std::to_integer<int>(splatted[i])));
+    EXPECT_LE(apart, 2);
   }
 
   settings.quadrics = QuadricMethod::splat;
   settings.levelOfDetail = false;
+  EXPECT_THROW(drawn({24, 18}, settings, others), std::runtime_error);
+  EXPECT_EQ(guarded, 27300u);
+  most = guarded;
   EXPECT_NE(drawn({24, 18}, settings, others), splatted);
   EXPECT_EQ(thinned(others), 0);
   settings.levelOfDetail = true;
