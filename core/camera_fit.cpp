@@ -11,19 +11,90 @@ namespace meniscus {
 
 namespace {
 
-// An axis has no sign of its own: take the one along which the distribution has its longer tail.
-glm::dvec3 withSign(glm::dvec3 axis, const FitSpheres& spheres, glm::dvec3 mean) {
-  double third = 0, scale = 0;
-  spheres.forEach([&](const FitSphere& s) {
-    const double x = glm::dot(s.center - mean, axis);
-    third += x * x * x;
-    scale += std::abs(x * x * x);
-  });
-  if (std::abs(third) > 1e-6 * scale) return third > 0 ? axis : -axis;
-  // Symmetric: the largest component becomes positive.
-  const glm::dvec3 a = glm::abs(axis);
-  const double largest = a.x >= a.y && a.x >= a.z ? axis.x : a.y >= a.z ? axis.y : axis.z;
-  return largest >= 0 ? axis : -axis;
+// Of points about their mean.
+struct Moments {
+  double count = 0;
+  glm::dvec3 mean{0.0};
+  glm::dmat3 second{0.0};
+  glm::dmat3 third[3] = {glm::dmat3(0.0), glm::dmat3(0.0), glm::dmat3(0.0)};  // sums of d_k d d^T
+
+  explicit Moments(const std::vector<FitSphere>& spheres) : count(static_cast<double>(spheres.size())) {
+    for (const FitSphere& s : spheres) mean += s.center;
+    mean /= count;
+    for (const FitSphere& s : spheres) {
+      const glm::dvec3 d = s.center - mean;
+      const glm::dmat3 square = glm::outerProduct(d, d);
+      second += square;
+      for (int k = 0; k < 3; ++k) third[k] += d[k] * square;
+    }
+  }
+  double secondAlong(const glm::dvec3& axis) const { return glm::dot(axis, second * axis); }
+  double thirdAlong(const glm::dvec3& axis) const {
+    double sum = 0;
+    for (int k = 0; k < 3; ++k) sum += axis[k] * glm::dot(axis, third[k] * axis);
+    return sum;
+  }
+};
+
+// Of the centres of all spheres in all places. A group is summed once, whatever the number of its places.
+class Distribution {
+ public:
+  explicit Distribution(const FitSpheres& spheres) : spheres_(spheres) {
+    for (const FitGroup& group : spheres.groups()) moments_.emplace_back(group.spheres);
+    forEachPlace([&](const Moments& m, const glm::dmat3&, const glm::dvec3& middle) {
+      count_ += m.count;
+      mean_ += m.count * middle;
+    });
+    mean_ /= count_;
+    forEachPlace([&](const Moments& m, const glm::dmat3& turn, const glm::dvec3& middle) {
+      const glm::dvec3 d = middle - mean_;
+      covariance_ += turn * m.second * glm::transpose(turn) + m.count * glm::outerProduct(d, d);
+    });
+  }
+
+  const glm::dmat3& covariance() const { return covariance_; }
+
+  // An axis has no sign of its own: the one along which there is the longer tail.
+  glm::dvec3 withSign(const glm::dvec3& axis) const {
+    double third = 0;
+    forEachPlace([&](const Moments& m, const glm::dmat3& turn, const glm::dvec3& middle) {
+      const glm::dvec3 along = glm::transpose(turn) * axis;
+      const double d = glm::dot(middle - mean_, axis);
+      third += m.thirdAlong(along) + 3 * d * m.secondAlong(along) + m.count * d * d * d;
+    });
+    const double deviation = std::sqrt(std::max(glm::dot(axis, covariance_ * axis), 0.0) / count_);
+    if (std::abs(third) > 1e-6 * count_ * deviation * deviation * deviation) return third > 0 ? axis : -axis;
+    // Symmetric: the largest component becomes positive.
+    const glm::dvec3 a = glm::abs(axis);
+    const double largest = a.x >= a.y && a.x >= a.z ? axis.x : a.y >= a.z ? axis.y : axis.z;
+    return largest >= 0 ? axis : -axis;
+  }
+
+ private:
+  // f(moments of a group, its turn, where its mean is) for each place.
+  template <typename F>
+  void forEachPlace(F f) const {
+    for (std::size_t g = 0; g < moments_.size(); ++g) {
+      for (const glm::dmat4& place : spheres_.groups()[g].places)
+        f(moments_[g], glm::dmat3(place), glm::dvec3(place * glm::dvec4(moments_[g].mean, 1.0)));
+    }
+  }
+
+  const FitSpheres& spheres_;
+  std::vector<Moments> moments_;  // of groups
+  double count_ = 0;
+  glm::dvec3 mean_{0.0};
+  glm::dmat3 covariance_{0.0};
+};
+
+// Moments so close, as a share of the largest, that only rounding, the file's or ours, tells their axes
+// apart.
+constexpr double kAlike = 1e-6;
+
+// As near to x as it may be, or to y where that is not across the axis at all.
+glm::dvec3 across(const glm::dvec3& axis) {
+  const glm::dvec3 near = std::abs(axis.x) < 0.9 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+  return glm::normalize(near - glm::dot(near, axis) * axis);
 }
 
 glm::dquat fromAxes(glm::dvec3 right, glm::dvec3 up) {
@@ -70,26 +141,29 @@ FitSphere FitSpheres::front() const {
   return FitGroup::placed(group.spheres.front(), group.places.front());
 }
 
-// Sums are taken one sphere after the other: the axes of a capsid, whose moments are all the same, are those
-// of their last digits.
 glm::dquat principalAxes(const FitSpheres& spheres, bool tall) {
-  const std::size_t count = spheres.size();
-  if (count < 2) return {1, 0, 0, 0};
-  glm::dvec3 mean(0.0);
-  spheres.forEach([&](const FitSphere& s) { mean += s.center; });
-  mean /= static_cast<double>(count);
-  glm::dmat3 covariance(0.0);
-  spheres.forEach([&](const FitSphere& s) {
-    const glm::dvec3 d = s.center - mean;
-    covariance += glm::outerProduct(d, d);
-  });
-  const SymmetricEigen eigen = symmetricEigen(covariance);
+  if (spheres.size() < 2) return {1, 0, 0, 0};
+  const Distribution distribution(spheres);
+  const SymmetricEigen eigen = symmetricEigen(distribution.covariance());
   std::array<int, 3> order{0, 1, 2};
   std::stable_sort(order.begin(), order.end(),
                    [&](int a, int b) { return eigen.values[a] > eigen.values[b]; });
   if (eigen.values[order[0]] <= 0) return {1, 0, 0, 0};
-  const glm::dvec3 longest = withSign(eigen.vectors[order[0]], spheres, mean);
-  const glm::dvec3 second = withSign(eigen.vectors[order[1]], spheres, mean);
+  glm::dvec3 longest = eigen.vectors[order[0]], second = eigen.vectors[order[1]];
+  const double alike = kAlike * eigen.values[order[0]];
+  const bool round = eigen.values[order[0]] - eigen.values[order[1]] <= alike,
+             rod = eigen.values[order[1]] - eigen.values[order[2]] <= alike;
+  if (round && rod) {
+    longest = {1, 0, 0};
+    second = {0, 1, 0};
+  } else if (round) {
+    longest = across(eigen.vectors[order[2]]);
+    second = glm::cross(eigen.vectors[order[2]], longest);
+  } else if (rod) {
+    second = across(longest);
+  }
+  longest = distribution.withSign(longest);
+  second = distribution.withSign(second);
   return tall ? fromAxes(-second, longest) : fromAxes(longest, second);
 }
 

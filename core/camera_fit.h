@@ -63,8 +63,9 @@ class FitSpheres {
 };
 
 /// Looks along the shortest principal axis, the longest being horizontal (vertical if `tall`), signs chosen
-/// by the third moments so that the result does not depend on the order of atoms. Identity for fewer than two
-/// points.
+/// by the third moments so that the result does not depend on the order of atoms. Where moments are alike to
+/// a millionth, as those of a capsid, the nearest axes of the coordinates are taken instead. Identity for
+/// fewer than two points.
 glm::dquat principalAxes(const FitSpheres& spheres, bool tall);
 
 /// Looks down the x, y or z axis (0, 1, 2) from its positive end; z: x right, y up; x: y right, z up; y: z

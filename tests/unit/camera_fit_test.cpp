@@ -219,8 +219,53 @@ TEST(PrincipalAxes, DegenerateInputsGiveARotation) {
   EXPECT_NEAR(std::abs((principalAxes(line, true) * along).y), 1, 1e-9);
 }
 
-void expectNear(glm::dvec3 a, glm::dvec3 b) {
-  EXPECT_LT(glm::length(a - b), 1e-12);
+void expectNear(glm::dvec3 a, glm::dvec3 b, double most = 1e-12) {
+  EXPECT_LT(glm::length(a - b), most);
+}
+
+// Copies are summed by the moments of one: as each by itself, and not rigid ones alike.
+TEST(PrincipalAxes, OfCopiesAreThoseOfAllTheirSpheres) {
+  Random random(6);
+  for (int i = 0; i < 50; ++i) {
+    FitSpheres copies;
+    std::vector<FitSphere> each;
+    for (int group = 0; group < 3; ++group) {
+      const std::vector<FitSphere> spheres = cloud(random, 20, random.inBox(100));
+      std::vector<glm::dmat4> places;
+      for (int k = 0; k < 4; ++k) {
+        glm::dmat4 place = glm::mat4_cast(random.rotation());
+        if (i % 2 == 0) place *= 1 + 0.1 * k;
+        place[3] = glm::dvec4(random.inBox(50), 1);
+        places.push_back(place);
+        for (const FitSphere& s : spheres) each.push_back(FitGroup::placed(s, place));
+      }
+      copies.add(spheres, places);
+    }
+    for (const bool tall : {false, true})
+      EXPECT_LT(angleBetween(principalAxes(copies, tall), principalAxes(each, tall)), 1e-7);
+  }
+}
+
+// Moments that rounding alone tells apart: the axes of the coordinates, however atoms are ordered or rounded.
+TEST(PrincipalAxes, OfWhatIsRoundFollowTheCoordinates) {
+  Random random(7);
+  const auto noise = [&] { return random.inBox(1e-8); };
+  std::vector<FitSphere> cube, rod, disc;
+  for (int k = 0; k < 8; ++k) {
+    const glm::dvec3 corner(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
+    cube.push_back({10.0 * corner + noise(), 1});
+    rod.push_back({glm::dvec3(1, 1, 5) * corner + noise(), 1});
+    disc.push_back({glm::dvec3(5, 1, 5) * corner + noise(), 1});
+  }
+  const auto rows = [](const std::vector<FitSphere>& spheres) {
+    return glm::transpose(glm::mat3_cast(principalAxes(spheres, false)));
+  };
+  expectNear(rows(cube)[0], {1, 0, 0}, 1e-12);
+  expectNear(rows(cube)[1], {0, 1, 0}, 1e-12);
+  expectNear(rows(rod)[0], {0, 0, 1}, 1e-7);
+  expectNear(rows(rod)[1], {1, 0, 0}, 1e-7);
+  expectNear(glm::abs(rows(disc)[2]), {0, 1, 0}, 1e-7);
+  expectNear(rows(disc)[0], {1, 0, 0}, 1e-7);
 }
 
 TEST(LookDownAxis, PutsTheNamedAxesOnTheScreen) {
