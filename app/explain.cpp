@@ -38,11 +38,11 @@ void explainPictures(const RunReport& report, std::string& text) {
 void explainPasses(const RenderStats& render, std::string& text) {
   text += "\nWhat ran\n";
   for (const PassStats& pass : render.passes)
-    fmt::format_to(std::back_inserter(text), "  {:<28}{:>10.2f} ms {:>6}x\n", pass.name, pass.milliseconds,
+    fmt::format_to(std::back_inserter(text), "  {:<31}{:>10.2f} ms {:>6}x\n", pass.name, pass.milliseconds,
                    pass.runs);
   text += "\nWhat was left out\n";
   for (const OmissionStats& omission : render.omissions)
-    fmt::format_to(std::back_inserter(text), "  {:<28}{}\n", omission.what, omission.reason);
+    fmt::format_to(std::back_inserter(text), "  {:<31} {}\n", omission.what, omission.reason);
   if (render.omissions.empty()) text += "  nothing\n";
 }
 

@@ -328,7 +328,7 @@ Renderer& PictureDrawer::renderer() {
   context_ = Context::create(options_.backend);
   RendererOptions rendererOptions;
   rendererOptions.shaderDir = options_.shaderDir;
-  rendererOptions.timePasses = options_.explain;
+  rendererOptions.timePasses = options_.explain || !options_.statsFile.empty();
   renderer_ = std::make_unique<Renderer>(rendererOptions);
   return *renderer_;
 }

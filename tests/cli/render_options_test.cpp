@@ -453,6 +453,9 @@ TEST_F(RenderOption, statsHoldWhatWasDoneAndTheCost) {
   }
   EXPECT_LE(sum, json["seconds"]["total"].get<double>());
   EXPECT_EQ(json["seconds"]["bonds"], 0) << "bonds are not looked for where none are drawn";
+  double passes = 0;
+  for (const auto& pass : json["passes"]) passes += pass["milliseconds"].get<double>();
+  EXPECT_GT(passes, 0) << "as --explain times them";
 }
 
 TEST_F(RenderOption, explainSaysWhatRanAndWhatDidNot) {
