@@ -100,7 +100,7 @@ void Renderer::Impl::keepInMemory(FrameGraph& graph, const Frame& frame, GBuffer
   const RenderSettings& settings = frame.settings;
   const std::size_t casts = (primitives->noQuadrics() ? 0 : 1) + primitives->surfaces.size();
   const bool lookAround = settings.lines.any() || settings.depthUnsharp.mode != UnsharpMode::off ||
-                          frame.occlusion || frame.traced || !labelBuffers.empty();
+                          frame.traced || !labelBuffers.empty();
   surfaceReader.keepCast({.id = settings.lines.groups != LineGroups::none},
                          casts > 1 || lookAround ? tiles::Extent::whole : tiles::Extent::occupied);
   gbuffer.planes = graph.createInMemory("planes");
@@ -134,7 +134,9 @@ GBufferRefs Renderer::Impl::buildFrame(FrameGraph& graph, const Frame& frame, co
   if (light.occlusion.valid()) {
     graph.leaveOut("pass occlusion", "ambient occlusion is traced");
   } else if (frame.occlusion) {
-    light.occlusion = addOcclusion(graph, occlusionBuffers, shaders, gbuffer, tile.width, tile.height);
+    light.occlusion =
+        addOcclusion(graph, occlusionBuffers, shaders, gbuffer, tile.width, tile.height, reader);
+    if (effects.processor) graph.leaveOut("programs of occlusion", effects.reason);
   } else {
     graph.leaveOut("pass occlusion", "ambient occlusion is off");
   }
@@ -272,9 +274,11 @@ void Renderer::Impl::drawOcclusion(Frame& frame, const std::function<void(double
     }
     // What is translucent occludes nothing.
     const Primitives& occluders = frame.translucent ? *withoutSurfaces : *apart();
-    occlusionBuffers.set(frame.view, drawOcclusionMaps(occluders, frame.view, frame.settings.occlusion, [&] {
-                           if (progress) progress(0);
-                         }));
+    const auto tell = [&] {
+      if (progress) progress(0);
+    };
+    occlusionBuffers.set(frame.view, drawOcclusionMaps(occluders, frame.view, frame.settings.occlusion, tell),
+                         effects.processor);
   }
   auto pass = std::find_if(stats.passes.begin(), stats.passes.end(),
                            [](const PassStats& s) { return s.name == "occlusion maps"; });

@@ -31,19 +31,21 @@ HWY_INLINE V pixelCenters(int x) {
 struct Slopes {
   V x, y;
 };
-// Of the pixels (x, y), (x + 1, y), ... of the planes.
-HWY_INLINE Slopes slopesAt(const SurfacePlanes& planes, int x, int y) {
+// Of pixels of a row y of the planes; centers: in the target.
+HWY_INLINE Slopes slopesAt(const SurfacePlanes& planes, V centers, int y) {
   const f32::ViewBlock& view = planes.view;
-  return {(pixelCenters(planes.x + x) + all(view.tile.x - view.center.x)) * all(view.scale.x),
+  return {(centers + all(view.tile.x - view.center.x)) * all(view.scale.x),
           all((static_cast<float>(planes.y + y) + 0.5f + view.tile.y - view.center.y) * view.scale.x)};
 }
+// Of the pixels (x, y), (x + 1, y), ... of the planes.
+HWY_INLINE Slopes slopesAt(const SurfacePlanes& planes, int x, int y) {
+  return slopesAt(planes, pixelCenters(planes.x + x), y);
+}
 
-// Of the pixels from `at` on.
-HWY_INLINE Vec3 normalsAt(const SurfacePlanes& planes, std::size_t at) {
+HWY_INLINE Vec3 decodeNormals(hn::Vec<U> stored) {
   const F f;
   const U u;
   const V one = all(1.0f), zero = hn::Zero(f);
-  const auto stored = hn::LoadU(u, planes.normal.data() + at);
   const auto channel = [&](auto bits) {
     return hn::ConvertTo(f, hn::BitCast(I(), bits)) * all(2.0f / 65535.0f) - one;
   };
@@ -55,13 +57,16 @@ HWY_INLINE Vec3 normalsAt(const SurfacePlanes& planes, std::size_t at) {
   return normalized(n);
 }
 
-// Of the pixels (x, y), (x + 1, y), ... from `at` on.
-HWY_INLINE Surfaces surfacesAt(const SurfacePlanes& planes, std::size_t at, int x, int y) {
+// Of the pixels from `at` on.
+HWY_INLINE Vec3 normalsAt(const SurfacePlanes& planes, std::size_t at) {
+  return decodeNormals(hn::LoadU(U(), planes.normal.data() + at));
+}
+
+// value, normal: as they are stored.
+HWY_INLINE Surfaces surfaceOf(const SurfacePlanes& planes, V value, hn::Vec<U> normal, const Slopes& slopes) {
   const F f;
   const f32::ViewBlock& view = planes.view;
-  const V one = all(1.0f), zero = hn::Zero(f);
-  const V value = hn::LoadU(f, planes.depth.data() + at), factor = all(view.depthMap.x);
-  const Slopes slopes = slopesAt(planes, x, y);
+  const V one = all(1.0f), zero = hn::Zero(f), factor = all(view.depthMap.x);
   Surfaces s;
   s.there = value > zero;
   if (view.scale.z > 0.5f) {
@@ -72,8 +77,13 @@ HWY_INLINE Surfaces surfacesAt(const SurfacePlanes& planes, std::size_t at, int 
   } else {
     s.point = {slopes.x, slopes.y, all(view.depth.w) + value / factor};
   }
-  s.normal = normalsAt(planes, at);
+  s.normal = decodeNormals(normal);
   return s;
+}
+// Of the pixels (x, y), (x + 1, y), ... from `at` on.
+HWY_INLINE Surfaces surfacesAt(const SurfacePlanes& planes, std::size_t at, int x, int y) {
+  return surfaceOf(planes, hn::LoadU(F(), planes.depth.data() + at), hn::LoadU(U(), planes.normal.data() + at),
+                   slopesAt(planes, x, y));
 }
 
 using U16 = hn::Rebind<std::uint16_t, F>;

@@ -7,6 +7,7 @@
 #include <bit>
 #include <glm/vec2.hpp>
 #include <numeric>
+#include <utility>
 
 #include "core/error.h"
 #include "render/post/fullscreen.h"
@@ -15,14 +16,11 @@ namespace meniscus {
 
 namespace {
 
-constexpr int kGroup = 4;
-constexpr int kBlock = 4;               // side of the block of pixels that share the directions
-constexpr int kTextureWidth = 1 << 12;  // as in shaders/post/occlusion.frag
+using effects::OcclusionDirection;
 
-// The order of the pixels of a block. Aligned blocks of a power of two of the directions are evenly spread
-// (core/occlusion_maps.h), and so should be what any few neighbours look along: the four pixels of a quarter
-// are neighbours in this order, and so are its diagonals.
-constexpr int kOrder[kBlock][kBlock] = {{0, 1, 4, 5}, {3, 2, 7, 6}, {12, 13, 8, 9}, {15, 14, 11, 10}};
+constexpr int kGroup = 4;
+constexpr int kBlock = effects::kOcclusionBlock;
+constexpr int kTextureWidth = 1 << 12;  // as in shaders/post/occlusion.frag
 
 // Layout of OcclusionUniforms in shaders/include/occlusion.glsl. Each begins where a uniform block may, which
 // is at multiples of at most 256 bytes.
@@ -50,16 +48,32 @@ glm::ivec2 partSize(int width, int height) {
 
 }  // namespace
 
-void OcclusionBuffers::set(const View& camera, const OcclusionMaps& maps) {
+void OcclusionBuffers::set(const View& camera, OcclusionMaps maps, bool onProcessor) {
   MENISCUS_CHECK(!maps.maps.empty() && maps.maps.size() % (2 * kGroup) == 0);
   // Occluders count in full up to half the radius; without one, up to the farthest there can be.
   const double radius = maps.radius > 0 ? maps.radius : 2 * maps.slabHeight * maps.maps.front().slabs;
   const double fade = 2.0 / radius;
-  slab_ = glm::vec4(glm::dvec4(1 / maps.slabHeight, maps.reach, fade * maps.step, 1 / maps.step));
-  fade_ = glm::vec4(glm::dvec4(2.0, fade, 0.0, 2e-6 * maps.slabHeight * maps.maps.front().slabs));
+  look_.slab = glm::vec4(glm::dvec4(1 / maps.slabHeight, maps.reach, fade * maps.step, 1 / maps.step));
+  look_.fade = glm::vec4(glm::dvec4(2.0, fade, 0.0, 2e-6 * maps.slabHeight * maps.maps.front().slabs));
   directions_.clear();
   for (const OcclusionMap& map : maps.maps) directions_.push_back(directionOf(map, camera));
-  upload(maps.texels);
+  onProcessor_ = onProcessor;
+  if (onProcessor) {
+    heights_ = std::move(maps.texels);
+    look_.texels = heights_;
+  } else {
+    upload(maps.texels);
+  }
+}
+
+void OcclusionBuffers::clear() {
+  texels_ = {};
+  heights_ = {};
+  look_ = {};
+}
+
+std::uint64_t OcclusionBuffers::bytes() const {
+  return texels_.bytes() + sizeof(OcclusionTexel) * heights_.size();
 }
 
 // A texture: llvmpipe fetches from buffers one value at a time.
@@ -93,35 +107,41 @@ OcclusionShare occlusionShare(int directions, int sampleCount) {
 void OcclusionBuffers::chooseDirections(int sample, int sampleCount, const Tile& tile) {
   const auto all = static_cast<int>(directions_.size());
   const OcclusionShare share = occlusionShare(all, sampleCount);
-  const int first = sample % (all / share.directions) * share.directions;
-  const int perPart = share.directions / share.parts;
+  const auto first = directions_.begin() + sample % (all / share.directions) * share.directions;
+  look_.directions.assign(first, first + share.directions);
+  look_.parts = share.parts;
+  look_.phase = {tile.x % kBlock, tile.y % kBlock};
+  look_.fade.z = static_cast<float>(share.parts) / static_cast<float>(share.directions);
+  if (!onProcessor_) setUniforms(tile);
+}
+
+void OcclusionBuffers::setUniforms(const Tile& tile) {
+  const int perPart = static_cast<int>(look_.directions.size()) / look_.parts;
   OcclusionBlock block{};
-  block.slab = slab_;
-  block.fade = fade_;
-  block.fade.z = 1.0f / static_cast<float>(perPart);
+  block.slab = look_.slab;
+  block.fade = look_.fade;
   std::vector<OcclusionBlock> blocks;
   draws_.clear();
   const auto add = [&](int part) {
     for (int i = 0; i < perPart; i += kGroup) {
       for (int k = 0; k < kGroup; ++k)
         block.directions[static_cast<std::size_t>(k)] =
-            directions_[static_cast<std::size_t>(first + part * perPart + i + k)];
+            look_.directions[static_cast<std::size_t>(part * perPart + i + k)];
       blocks.push_back(block);
     }
   };
-  if (share.parts == 1) {
+  if (look_.parts == 1) {
     block.part = {0, 0, 1, 0};
     add(0);
     draws_ = {{0, 0, tile.width, tile.height, perPart / kGroup}};
   } else {
-    const glm::ivec2 phase(tile.x % kBlock, tile.y % kBlock);
     const glm::ivec2 size = partSize(tile.width, tile.height);
-    block.parts = {size, phase};
+    block.parts = {size, look_.phase};
     for (int y = 0; y < kBlock; ++y) {
       for (int x = 0; x < kBlock; ++x) {
         const glm::ivec2 corner = glm::ivec2(x, y) * size;
-        block.part = {glm::ivec2(x, y) - phase - kBlock * corner, kBlock, 0};
-        add(kOrder[y][x] % share.parts);
+        block.part = {glm::ivec2(x, y) - look_.phase - kBlock * corner, kBlock, 0};
+        add(effects::occlusionPartOf({x, y}, look_.parts));
         draws_.push_back({corner.x, corner.y, size.x, size.y, perPart / kGroup});
       }
     }
@@ -165,12 +185,22 @@ void OcclusionBuffers::divideDepth(ShaderLibrary& shaders) const {
 }
 
 int reachOf(const OcclusionSettings& settings, int sampleCount) {
-  return settings.on && occlusionShare(settings.directions, sampleCount).parts > 1 ? kBlock - 1 : 0;
+  const bool shared = settings.on && occlusionShare(settings.directions, sampleCount).parts > 1;
+  return shared ? effects::kOcclusionReach : 0;
 }
 
 TextureRef addOcclusion(FrameGraph& graph, const OcclusionBuffers& buffers, ShaderLibrary& shaders,
-                        const GBufferRefs& gbuffer, int width, int height) {
+                        const GBufferRefs& gbuffer, int width, int height, SurfaceReader* reader) {
   using gl::TextureFormat;
+  if (reader != nullptr) {
+    const TextureRef result = reader->createResult(graph, "occlusion", TextureFormat::rg16);
+    graph.addPass("occlusion", surfaceOf(gbuffer), {reader->attachment(result)},
+                  [&buffers, reader, gbuffer, result](const PassContext& context) {
+                    lookUpOcclusion(reader->read(context, gbuffer), buffers.look(), reader->occlusion);
+                    reader->write(context, result, reader->occlusion);
+                  });
+    return result;
+  }
   const TextureRef occlusion = graph.create("occlusion", {TextureFormat::rg16, width, height});
   const auto bindSurface = [gbuffer](const PassContext& context) {
     glBindTextureUnit(0, context.texture(gbuffer.depth).object.name());

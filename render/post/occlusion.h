@@ -11,19 +11,15 @@
 #include <glm/vec4.hpp>
 #include <vector>
 
+#include "core/effects/occlusion_lookup.h"
 #include "core/occlusion_maps.h"
 #include "render/frame_graph.h"
 #include "render/gbuffer.h"
+#include "render/post/surface_reader.h"
 #include "render/shader_library.h"
 #include "render/view_block.h"
 
 namespace meniscus {
-
-/// A direction as shaders/include/occlusion.glsl takes it.
-struct OcclusionDirection {
-  glm::vec4 rowX, rowY, rowZ;
-  glm::ivec4 map;
-};
 
 /// How a frame that is one of several samples of a picture deals its directions out.
 struct OcclusionShare {
@@ -32,15 +28,17 @@ struct OcclusionShare {
 };
 OcclusionShare occlusionShare(int directions, int sampleCount);
 
-/// The maps and the pass's uniforms on the GPU.
+/// The maps and how a frame looks them up, on the GPU or in main memory.
 class OcclusionBuffers {
  public:
   /// Takes the maps of one picture, which `camera` sees.
-  void set(const View& camera, const OcclusionMaps& maps);
+  void set(const View& camera, OcclusionMaps maps, bool onProcessor);
   /// Which of the directions the next frame's pixels use: all, or for one of several samples its part.
   void chooseDirections(int sample, int sampleCount, const Tile& tile);
-  void clear() { texels_ = {}; }
-  std::uint64_t bytes() const { return texels_.bytes(); }
+  void clear();
+  std::uint64_t bytes() const;
+  /// As the processor takes it, if it was asked for.
+  const effects::OcclusionLook& look() const { return look_; }
 
   /// Into how many parts the next frame's target is divided.
   int parts() const { return static_cast<int>(draws_.size()); }
@@ -56,13 +54,16 @@ class OcclusionBuffers {
     int x, y, width, height;
     int groups;  // of directions, added up
   };
-  std::vector<OcclusionDirection> directions_;
-  glm::vec4 slab_{0.0f}, fade_{0.0f};
+  std::vector<effects::OcclusionDirection> directions_;
+  effects::OcclusionLook look_;
+  bool onProcessor_ = false;
+  std::vector<OcclusionTexel> heights_;
   std::vector<Draw> draws_;
   gl::Buffer uniforms_;
   gl::Texture texels_;
 
   void upload(const std::vector<OcclusionTexel>& texels);
+  void setUniforms(const Tile& tile);
   void eachDraw(const std::function<void(bool first)>& call) const;
 };
 
@@ -70,8 +71,8 @@ class OcclusionBuffers {
 int reachOf(const OcclusionSettings& settings, int sampleCount);
 
 /// Adds the passes. Returns per pixel what is hidden of the sky and the sky itself, in one unit (both 0 on
-/// the background).
+/// the background). reader: if the processor computes it; must outlive the graph.
 TextureRef addOcclusion(FrameGraph& graph, const OcclusionBuffers& buffers, ShaderLibrary& shaders,
-                        const GBufferRefs& gbuffer, int width, int height);
+                        const GBufferRefs& gbuffer, int width, int height, SurfaceReader* reader = nullptr);
 
 }  // namespace meniscus

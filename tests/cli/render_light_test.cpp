@@ -63,8 +63,7 @@ TEST_F(RenderLight, occlusionDarkensByRadiusAndStrength) {
   EXPECT_LT(full, light({"--occlusion-radius", "4"}));
   EXPECT_NEAR(light({"--occlusion-directions", "128"}), light({"--occlusion-directions", "32"}), 0.01);
   EXPECT_EQ(passes(stats(kProtein, {"--occlusion", "on", "--quadrics", "splat"})),
-            (std::vector<std::string>{"occlusion maps", "spheres", "occlusion depth", "occlusion",
-                                      "occlusion gather", "shade"}));
+            (std::vector<std::string>{"occlusion maps", "spheres", "occlusion", "shade"}));
 }
 
 TEST_F(RenderLight, tracedRaysTakeThePlaceOfMaps) {

@@ -104,19 +104,42 @@ TEST_F(ProcessorEffects, LinesAreThoseOfTheShader) {
   }
 }
 
+TEST_F(ProcessorEffects, OcclusionIsThatOfTheShader) {
+  const Primitives scene = chain();
+  for (const Projection projection : kBoth) {
+    const View view = test::viewOf(scene, {323, 201}, projection);
+    RenderSettings settings;
+    settings.occlusion.on = true;
+    settings.samples = 1;
+    expectSame(scene, view, settings, "directions shared by 16 pixels");
+    settings.samples = 4;
+    expectSame(scene, view, settings, "by fewer");
+    settings.samples = 9;
+    expectSame(scene, view, settings, "each pixel by itself");
+    settings.samples = 1;
+    settings.occlusion.radius = 0;
+    settings.occlusion.directions = 24;
+    expectSame(scene, view, settings, "of everything, in few directions");
+  }
+}
+
 TEST_F(ProcessorEffects, AreTheSameBytesByEveryInstructionSetAndInParts) {
   const Primitives scene = chain();
   const View view = test::viewOf(scene, {150, 97});
   RenderSettings settings;
-  settings.samples = 2;
   settings.shadows.mode = ShadowMode::soft;
   settings.lines.silhouettes = true;
   settings.lines.groups = LineGroups::atoms;
-  const auto whole = picture(scene, view, settings, true);
-  EXPECT_EQ(picture(scene, view, settings, true, 41), whole);
-  for (const std::string& set : tiles::instructionSets()) {
-    tiles::useInstructionSet(set);
-    EXPECT_EQ(picture(scene, view, settings, true), whole) << set;
+  settings.occlusion.on = true;
+  for (const int samples : {2, 8}) {  // pixels share directions; each takes all
+    settings.samples = samples;
+    const auto whole = picture(scene, view, settings, true);
+    EXPECT_EQ(picture(scene, view, settings, true, 41), whole);
+    for (const std::string& set : tiles::instructionSets()) {
+      tiles::useInstructionSet(set);
+      EXPECT_EQ(picture(scene, view, settings, true), whole) << set;
+    }
+    tiles::useInstructionSet("");
   }
 }
 

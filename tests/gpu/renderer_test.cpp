@@ -120,12 +120,22 @@ TEST_F(RendererTest, WhereTheProcessorCastsAndShadesNothingGoesThroughTextures) 
   EXPECT_EQ(stats.programs, Names{});
   EXPECT_EQ(names(stats.textures), Names{});
   EXPECT_TRUE(omitted(stats, "channel depth"));
-  // What shaders compute of it gets the channels that it reads.
   RenderSettings settings = test::withSamples(1, QuadricMethod::tiles);
+  settings.shadows.mode = ShadowMode::soft;
   settings.occlusion.on = true;
+  settings.lines.silhouettes = true;
+  settings.depthUnsharp.mode = UnsharpMode::halo;
   test::MemorySink sink;
-  renderer.renderPicture(test::viewOf(*scene, kSize), Lighting{}, {}, settings, PixelFormat::rgba8, sink);
-  const Names textures = names(renderer.stats().textures);
+  const auto drawnWith = [&] {
+    renderer.renderPicture(test::viewOf(*scene, kSize), Lighting{}, {}, settings, PixelFormat::rgba8, sink);
+    return renderer.stats();
+  };
+  stats = drawnWith();
+  EXPECT_EQ(stats.programs, Names{});
+  EXPECT_EQ(names(stats.textures), Names{});
+  // What shaders compute of it gets the channels that it reads.
+  settings.lines.creases = true;
+  const Names textures = names(drawnWith().textures);
   EXPECT_TRUE(std::binary_search(textures.begin(), textures.end(), "normal"));
   EXPECT_FALSE(std::binary_search(textures.begin(), textures.end(), "albedo"));
 }

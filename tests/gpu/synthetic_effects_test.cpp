@@ -142,7 +142,7 @@ class SyntheticOcclusion : public SyntheticEffects {
     settings.radius = 0;
     const test::SyntheticGBuffer gbuffer(view, seen);
     OcclusionBuffers buffers;
-    buffers.set(view, drawOcclusionMaps(scene, view, settings));
+    buffers.set(view, drawOcclusionMaps(scene, view, settings), false);
     std::vector<double> out(static_cast<std::size_t>(kSize.width * kSize.height), 0);
     for (int sample = 0; sample < samples; ++sample) {
       buffers.chooseDirections(sample, samples, {0, 0, kSize.width, kSize.height});
