@@ -4,8 +4,10 @@
 #include <atomic>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <span>
 #include <thread>
 
+#include "core/height_map.h"
 #include "core/light_view.h"
 #include "core/sampling.h"
 #include "core/shared_math.h"
@@ -63,56 +65,43 @@ double reachOf(const Primitives& primitives, const std::vector<SpherePrimitive>&
 class Canvas {
  public:
   Canvas(const OcclusionMaps& all, const OcclusionMap& map, const glm::dvec3& origin)
-      : width_(map.view.size.width),
-        height_(map.view.size.height),
-        slabs_(map.slabs),
-        texel_(static_cast<float>(map.view.pixelSize)),
-        perSlab_(static_cast<float>(1 / all.slabHeight)),
-        perStep_(static_cast<float>(1 / all.step)) {
+      : rotation_(map.view.rotation),
+        texels_(static_cast<std::size_t>(map.view.size.width) *
+                static_cast<std::size_t>(map.view.size.height)),
+        heights_(texels_ * static_cast<std::size_t>(map.slabs) + HeightMap::kBeyond, 0) {
     const double perTexel = 1 / map.view.pixelSize;
     const glm::dmat3 scaled = glm::dmat3({perTexel, 0, 0}, {0, perTexel, 0}, {0, 0, 1}) * map.view.rotation;
-    turn_ = glm::mat3(scaled);
-    shift_ = glm::vec3(scaled * (origin - map.view.pivot) + glm::dvec3(map.view.center, -map.view.farZ));
-    rotation_ = glm::mat3(map.view.rotation);
-    heights_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) *
-                        static_cast<std::size_t>(slabs_),
-                    0);
+    map_ = {map.view.size.width,
+            map.view.size.height,
+            map.slabs,
+            static_cast<float>(map.view.pixelSize),
+            static_cast<float>(1 / all.slabHeight),
+            static_cast<float>(1 / all.step),
+            glm::mat3(scaled),
+            glm::vec3(scaled * (origin - map.view.pivot) + glm::dvec3(map.view.center, -map.view.farZ)),
+            heights_.data()};
   }
+  Canvas(const Canvas&) = delete;
+  Canvas& operator=(const Canvas&) = delete;
 
-  void draw(const SpherePrimitive& s) {
-    if (!(s.radius > 0)) return;
-    const glm::vec3 c = turn_ * s.center + shift_;
-    const float r = s.radius / texel_;
-    const float r2 = r * r;
-    const Range rows = range(c.y, r, height_), columns = range(c.x, r, width_);
-    std::uint16_t* slab = slabOf(c.z);
-    for (int y = rows.first; y <= rows.last; ++y) {
-      const float dy = static_cast<float>(y) + 0.5f - c.y;
-      std::uint16_t* row = slab + static_cast<std::ptrdiff_t>(y) * width_;
-      for (int x = columns.first; x <= columns.last; ++x) {
-        const float dx = static_cast<float>(x) + 0.5f - c.x;
-        const float under = r2 - dy * dy - dx * dx;
-        if (under >= 0) raise(row[x], c.z + texel_ * std::sqrt(under));
-      }
-    }
-  }
+  void draw(std::span<const SpherePrimitive> spheres) { raiseBalls(map_, spheres); }
 
   void draw(const CylinderPrimitive& s) {
     const glm::vec3 along = rotation_ * (s.b - s.a);
     const float halfLength = 0.5f * glm::length(along);
     if (!(s.radius > 0 && halfLength > 0)) return;
     const glm::vec3 axis = along / (2 * halfLength);
-    const glm::vec3 c = turn_ * (0.5f * (s.a + s.b)) + shift_;
+    const glm::vec3 c = map_.turn * (0.5f * (s.a + s.b)) + map_.shift;
     const auto extent = [&](float a) {
-      return (halfLength * std::abs(a) + s.radius * std::sqrt(std::max(1 - a * a, 0.0f))) / texel_;
+      return (halfLength * std::abs(a) + s.radius * std::sqrt(std::max(1 - a * a, 0.0f))) / map_.texel;
     };
-    const Range rows = range(c.y, extent(axis.y), height_), columns = range(c.x, extent(axis.x), width_);
-    std::uint16_t* slab = slabOf(c.z);
+    const TexelRange rows(c.y, extent(axis.y), map_.height), columns(c.x, extent(axis.x), map_.width);
+    std::uint16_t* slab = map_.slabOf(c.z);
     for (int y = rows.first; y <= rows.last; ++y) {
       for (int x = columns.first; x <= columns.last; ++x) {
         const f32::Chord chord =
             f32::cylinderChord(fromCenter(x, y, c), {0, 0, -1}, axis, halfLength, s.radius);
-        if (chord.hit) raise(slab[static_cast<std::ptrdiff_t>(y) * width_ + x], c.z + chord.entry.z);
+        if (chord.hit) raise(slab[static_cast<std::ptrdiff_t>(y) * map_.width + x], c.z + chord.entry.z);
       }
     }
   }
@@ -122,61 +111,48 @@ class Canvas {
     if (!(radii.x > 0 && radii.y > 0 && radii.z > 0)) return;
     const glm::vec3 u = rotation_ * (e.axisA / radii.x), v = rotation_ * (e.axisB / radii.y),
                     w = glm::cross(u, v);
-    const glm::vec3 c = turn_ * e.center + shift_;
-    const auto extent = [&](int k) { return glm::length(radii * glm::vec3(u[k], v[k], w[k])) / texel_; };
-    const Range rows = range(c.y, extent(1), height_), columns = range(c.x, extent(0), width_);
-    std::uint16_t* slab = slabOf(c.z);
+    const glm::vec3 c = map_.turn * e.center + map_.shift;
+    const auto extent = [&](int k) { return glm::length(radii * glm::vec3(u[k], v[k], w[k])) / map_.texel; };
+    const TexelRange rows(c.y, extent(1), map_.height), columns(c.x, extent(0), map_.width);
+    std::uint16_t* slab = map_.slabOf(c.z);
     for (int y = rows.first; y <= rows.last; ++y) {
       for (int x = columns.first; x <= columns.last; ++x) {
         const f32::Chord chord = f32::ellipsoidChord(fromCenter(x, y, c), {0, 0, -1}, u, v, w, radii);
-        if (chord.hit) raise(slab[static_cast<std::ptrdiff_t>(y) * width_ + x], c.z + chord.entry.z);
+        if (chord.hit) raise(slab[static_cast<std::ptrdiff_t>(y) * map_.width + x], c.z + chord.entry.z);
       }
     }
   }
 
+  // To the right of a row's last texel lies the first of the next, which nobody takes for its neighbour.
   void pack(OcclusionTexel* out) const {
-    const std::size_t area = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
-    for (int slab = 0; slab < slabs_; slab += 2) {
-      for (int k = 0; k < kSlabsPerTexel; ++k) {
-        if (slab + k >= slabs_) continue;  // empty
-        const std::uint16_t* heights = heights_.data() + static_cast<std::size_t>(slab + k) * area;
-        for (std::size_t i = 0; i + 1 < area; ++i)
-          out[i][static_cast<std::size_t>(k)] = heights[i] | std::uint32_t{heights[i + 1]} << 16;
-        out[area - 1][static_cast<std::size_t>(k)] = heights[area - 1];
+    for (int slab = 0; slab < map_.slabs; slab += 2) {
+      const std::uint16_t* const heights = heights_.data() + static_cast<std::size_t>(slab) * texels_;
+      const auto count = static_cast<std::size_t>(std::min(kSlabsPerTexel, map_.slabs - slab));
+      for (std::size_t i = 0; i < texels_; ++i) {
+        for (std::size_t k = 0; k < count; ++k) {
+          const std::uint16_t* const texel = heights + k * texels_ + i;
+          out[i][k] = texel[0] | std::uint32_t{texel[1]} << 16;
+        }
       }
-      out += area;
+      out += texels_;
     }
   }
 
  private:
-  struct Range {
-    int first, last;
-  };
-  // Texels whose centres lie within `reach` of a place.
-  static Range range(float place, float reach, int size) {
-    const float low = std::ceil(place - reach - 0.5f), high = std::floor(place + reach - 0.5f);
-    return {static_cast<int>(std::clamp(low, 0.0f, static_cast<float>(size))),
-            static_cast<int>(std::clamp(high, -1.0f, static_cast<float>(size - 1)))};
-  }
   // A texel's centre [Å].
   glm::vec3 fromCenter(int x, int y, const glm::vec3& c) const {
-    return {(static_cast<float>(x) + 0.5f - c.x) * texel_, (static_cast<float>(y) + 0.5f - c.y) * texel_, 0};
-  }
-  std::uint16_t* slabOf(float height) {
-    const int slab = static_cast<int>(std::clamp(height * perSlab_, 0.0f, static_cast<float>(slabs_) - 0.5f));
-    return heights_.data() + static_cast<std::size_t>(slab) * static_cast<std::size_t>(width_) *
-                                 static_cast<std::size_t>(height_);
+    return {(static_cast<float>(x) + 0.5f - c.x) * map_.texel,
+            (static_cast<float>(y) + 0.5f - c.y) * map_.texel, 0};
   }
   void raise(std::uint16_t& texel, float height) const {
-    const auto value = static_cast<std::uint16_t>(std::clamp(height * perStep_, 1.0f, 65535.0f));
+    const auto value = static_cast<std::uint16_t>(std::clamp(height * map_.perStep, 1.0f, 65535.0f));
     if (value > texel) texel = value;
   }
 
-  int width_, height_, slabs_;
-  float texel_, perSlab_, perStep_;
-  glm::mat3 turn_{1.0f}, rotation_{1.0f};
-  glm::vec3 shift_{0.0f};
+  glm::mat3 rotation_;
+  std::size_t texels_;  // of a slab
   std::vector<std::uint16_t> heights_;
+  HeightMap map_;
 };
 
 // Chooses views and sizes; nothing is drawn.
@@ -242,10 +218,10 @@ OcclusionMaps drawOcclusionMaps(const Primitives& primitives, const View& camera
     for (std::size_t i = next++; i < all.maps.size(); i = next++) {
       if (watched && watch) watch();
       Canvas canvas(all, all.maps[i], primitives.origin);
-      for (const SpherePrimitive& s : primitives.spheres) canvas.draw(s);
+      canvas.draw(primitives.spheres);
       for (const CylinderPrimitive& c : primitives.cylinders) canvas.draw(c);
       for (const EllipsoidPrimitive& e : primitives.ellipsoids) canvas.draw(e);
-      for (const SpherePrimitive& s : cores) canvas.draw(s);
+      canvas.draw(cores);
       canvas.pack(all.texels.data() + all.maps[i].first);
     }
   };
