@@ -165,7 +165,7 @@ void lookRow(const OcclusionTask& task, int y, std::uint32_t* out) {
   }
 }
 
-// Each pixel of a row along its part of them: every fourth pixel the same.
+// Each pixel of a row along its part of them: every fourth pixel the same. `out` holds zeros.
 void lookRowInParts(const OcclusionTask& task, int y, const SkySums& out) {
   const F f;
   const SurfacePlanes& planes = *task.planes;
@@ -184,6 +184,7 @@ void lookRowInParts(const OcclusionTask& task, int y, const SkySums& out) {
         depth[k] = planes.depth[at];
         normal[k] = planes.normal[at];
       }
+      if (hn::AllTrue(f, hn::Load(f, depth) <= hn::Zero(f))) continue;
       const V centers =
           hn::Iota(f, 0.0f) * all(kOcclusionBlock) + all(static_cast<float>(planes.x + x) + 0.5f);
       const Surfaces s =
@@ -247,6 +248,11 @@ void gatherAcross(const OcclusionTask& task, int y, const float* depth, const Co
   const auto lanes = static_cast<int>(laneCount());
   for (int x = 0; x < planes.width; x += lanes) {
     const auto count = static_cast<std::size_t>(std::min(lanes, planes.width - x));
+    if (hn::AllTrue(f, hn::LoadU(f, depth + x) <= hn::Zero(f))) {
+      storeSome(f, hn::Zero(f), count, out.hidden + x);
+      storeSome(f, hn::Zero(f), count, out.sky + x);
+      continue;
+    }
     Gathering gathering(planes, firstOf(planes, y) + static_cast<std::size_t>(x), x, y, false);
     for (int away = -kOcclusionReach; away <= kOcclusionReach; ++away) {
       const int at = x + away;
@@ -267,7 +273,12 @@ void gatherUp(const OcclusionTask& task, int y, const ConstSkySums& from, std::u
   const int low = std::max(-kOcclusionReach, -y), high = std::min(kOcclusionReach, planes.height - 1 - y);
   for (int x = 0; x < planes.width; x += lanes) {
     const auto count = static_cast<std::size_t>(std::min(lanes, planes.width - x));
-    Gathering gathering(planes, firstOf(planes, y) + static_cast<std::size_t>(x), x, y, true);
+    const std::size_t here = firstOf(planes, y) + static_cast<std::size_t>(x);
+    if (hn::AllTrue(f, hn::LoadU(f, planes.depth.data() + here) <= hn::Zero(f))) {
+      storeSome(U(), hn::Zero(U()), count, out + x);
+      continue;
+    }
+    Gathering gathering(planes, here, x, y, true);
     for (int away = low; away <= high; ++away) {
       const std::size_t at = firstOf(planes, y + away) + static_cast<std::size_t>(x);
       gathering.add(away, hn::LoadU(f, planes.depth.data() + at), hn::LoadU(f, from.hidden + at),
@@ -321,8 +332,11 @@ void lookUpOcclusion(const SurfacePlanes& planes, const OcclusionLook& look,
     });
     return;
   }
-  // Vectors reach beyond the last pixel.
-  std::vector<float> hidden(planes.pixels() + kMostLanes), sky(hidden.size());
+  // Vectors reach beyond the last pixel. The memory of the frame before serves again.
+  thread_local std::vector<float> ofFrame;
+  const std::size_t pixels = planes.pixels() + kMostLanes;
+  ofFrame.resize(2 * pixels);
+  const SkySums rows{ofFrame.data(), ofFrame.data() + pixels};
   forRows(planes, [&](int y, std::size_t first) {
     const auto width = static_cast<std::size_t>(planes.width);
     thread_local std::vector<float> row;
@@ -332,11 +346,11 @@ void lookUpOcclusion(const SurfacePlanes& planes, const OcclusionLook& look,
     std::copy_n(planes.depth.data() + first, width, depth);
     HWY_DYNAMIC_DISPATCH(lookRowInParts)(task, y, seen);
     HWY_DYNAMIC_DISPATCH(gatherAcross)
-    (task, y, depth, ConstSkySums{seen.hidden, seen.sky}, SkySums{hidden.data() + first, sky.data() + first});
+    (task, y, depth, ConstSkySums{seen.hidden, seen.sky}, SkySums{rows.hidden + first, rows.sky + first});
   });
   forRows(planes, [&](int y, std::size_t first) {
     HWY_DYNAMIC_DISPATCH(gatherUp)
-    (task, y, ConstSkySums{hidden.data(), sky.data()}, occlusion.data() + first);
+    (task, y, ConstSkySums{rows.hidden, rows.sky}, occlusion.data() + first);
   });
 }
 
