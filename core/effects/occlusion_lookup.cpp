@@ -32,8 +32,8 @@ struct OcclusionTask {
     return std::span(look->directions).subspan(static_cast<std::size_t>(part) * count, count);
   }
 };
-/// Room for kOcclusionReach pixels, and for a vector.
-inline constexpr std::size_t kSkyMargin = kMostLanes;
+/// Room for kOcclusionReach pixels beyond those of a vector.
+inline constexpr std::size_t kSkyMargin = kMostLanes + kOcclusionReach;
 }  // namespace meniscus::effects
 #endif
 

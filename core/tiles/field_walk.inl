@@ -111,6 +111,7 @@ class Walk {
       }
       if (count_ >= kManyChords) {
         passMany(hn::AndNot(stopped, live_));
+        load([&] { return next_; });
         live_ = hn::And(live_, next_ < far);
         if (hn::AllFalse(f, live_)) break;
       }
@@ -351,6 +352,17 @@ class Walk {
     live_ = hn::AndNot(single, live_);
   }
 
+  // The last entry or exit that is not behind `end`, or where the ray is: intervals begin there and nowhere
+  // else, whichever rays walk together.
+  HWY_INLINE V lastEventBefore(V end) const {
+    V last = now_;
+    for (std::size_t i = 0; i < count_; ++i) {
+      const V enter = chord(window_.enter, i), leave = chord(window_.leave, i);
+      last = hn::Max(last, hn::IfThenElse(leave <= end, leave, hn::IfThenElse(enter <= end, enter, last)));
+    }
+    return last;
+  }
+
   // Takes some rays as far as looks at whole stretches reach, however many entries and exits these hold: twice as
   // far each time until a look fails, then half as far.
   void passMany(M rays) {
@@ -368,7 +380,7 @@ class Walk {
       const M passed = hn::And(rays, keepsSign(end));
       failed = hn::Or(failed, hn::AndNot(passed, rays));
       stretch_ = hn::IfThenElse(rays, stretch_ * hn::IfThenElse(failed, half, twice), stretch_);
-      if (!hn::AllFalse(f, passed)) advance(passed, end);
+      if (!hn::AllFalse(f, passed)) advance(passed, lastEventBefore(end));
     }
   }
 

@@ -68,7 +68,7 @@ void OcclusionBuffers::set(const View& camera, OcclusionMaps maps, bool onProces
 
 void OcclusionBuffers::clear() {
   texels_ = {};
-  heights_ = {};
+  std::vector<OcclusionTexel>().swap(heights_);  // assignment might only empty it
   look_ = {};
 }
 

@@ -214,8 +214,16 @@ TEST_P(FieldTilesTest, HitsAreTheTruthFromWithin) {
 }
 
 TEST_P(FieldTilesTest, InstructionSetsGiveTheSameBits) {
-  for (const Case& c : {kCases[1], kCases[2], kCases[6]}) {
-    const MetaballField field = test::randomField(c.kernel, c.level, 200, 9, c.hollow, 5);
+  struct Crowd {
+    Case kind;
+    double spread;
+  };
+  // In the last ones so many overlap that whole stretches of rays are looked at.
+  for (const auto& [c, spread] : {Crowd{kCases[1], 9}, Crowd{kCases[2], 9}, Crowd{kCases[6], 9},
+                                  Crowd{kCases[1], 2}, Crowd{kCases[3], 2}}) {
+    MetaballField field = test::randomField(c.kernel, c.level, 200, spread, c.hollow, 5);
+    if (spread < 9)
+      for (Metaball& ball : field.balls) ball.coefficient *= 0.3f;
     const View view = test::viewOfBall(GetParam(), {130, 100}, kOrigin, 20);
     std::vector<std::uint32_t> albedo, other;
     const HitImage widest = cast(field, targetOf(view), nullptr, &albedo);
@@ -340,6 +348,30 @@ TEST_P(FieldTilesTest, ManyEntriesArePassedAtOnce) {
     EXPECT_LT(counts.intervals, 8 * counts.rays);
     EXPECT_LT(counts.pieces, 4 * counts.rays);
     EXPECT_LT(counts.stretches, 10 * counts.rays);
+  }
+}
+
+// Balls in a heap that rays pass at once, whether it shows or not, and a wall behind.
+TEST_P(FieldTilesTest, WhatLiesBehindManyEntriesIsMet) {
+  for (const bool faint : {true, false}) {
+    MetaballField field;
+    field.level = 0.5;
+    test::Random random(11);
+    std::uint32_t id = 0;
+    for (int i = 0; i < 120; ++i)
+      field.balls.push_back({glm::vec3(random.inBox(0.5)), 4,
+                             faint        ? 0.004f
+                             : i % 2 == 0 ? 0.05f
+                                          : -0.05f,
+                             0xFFFFFF, ++id});
+    for (int x = -6; x <= 6; ++x)
+      for (int y = -6; y <= 6; ++y)
+        field.balls.push_back({glm::vec3(1.5 * x, 1.5 * y, -20), 3, 1, 0xFFFFFF, ++id});
+    const View view = viewFromAfar(GetParam(), {64, 48}, 8, 500, 25);
+    const HitErrors errors = compareHits(cast(field, targetOf(view)), traceReference(field, kOrigin, view));
+    EXPECT_EQ(errors.missed + errors.falseHits, 0u);
+    EXPECT_LE(errors.relativeRms, 1e-5);
+    EXPECT_EQ(errors.compared, 64u * 48u) << "the wall fills the picture";
   }
 }
 
