@@ -25,7 +25,7 @@ constexpr float kFar = std::numeric_limits<float>::infinity();
 // Steps that a ray waits for those beside it: it keeps the chords that they pass meanwhile.
 constexpr int kPatience = 16;
 // From so many chords on, rays try to pass many entries and exits at once.
-constexpr std::size_t kManyChords = 48;
+constexpr std::size_t kManyChords = 64;
 
 // A packet of rays in its tile's frame: t = 0 on the plane that the tile's balls are measured from.
 struct Packet {
