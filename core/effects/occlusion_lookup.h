@@ -14,8 +14,8 @@ namespace meniscus::effects {
 
 /// A direction as shaders/include/occlusion.glsl takes it.
 struct OcclusionDirection {
-  glm::vec4 rowX, rowY,
-      rowZ;        ///< camera's view space -> texels, texels, height above the map's far plane [Å]
+  /// Camera's view space -> texels, texels, height above the map's far plane [Å].
+  glm::vec4 rowX, rowY, rowZ;
   glm::ivec4 map;  ///< first texel, width, height, slabs
 };
 
