@@ -110,10 +110,9 @@ HWY_INLINE Light surfaceLight(const ShadeTask& task, std::size_t at, int x, int 
   V visible = one, sky = one;
   if (!light.visibility.empty()) visible = loadShares(light.visibility.data() + at, count);
   if (!light.occlusion.empty()) {
-    std::uint16_t halves[2 * kMostLanes] = {};
-    std::memcpy(halves, light.occlusion.data() + at, 4 * count);
-    const V hidden = loadStrided(halves, count, 2, kUnorm16),
-            whole = loadStrided(halves + 1, count, 2, kUnorm16);
+    const auto stored = loadSome(U(), light.occlusion.data() + at, count);
+    const auto half = [](auto bits) { return hn::ConvertTo(F(), hn::BitCast(I(), bits)) * all(kUnorm16); };
+    const V hidden = half(hn::And(stored, hn::Set(U(), 0xFFFFu))), whole = half(hn::ShiftRight<16>(stored));
     sky = one - all(b.ambient.w) * hn::Min(hidden / hn::Max(whole, all(1e-5f)), one);
   }
   Light l{lit(b, linearAlbedo(task, at), normalsAt(planes, at), toEye, visible, sky), one};
