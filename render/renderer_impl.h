@@ -128,9 +128,9 @@ struct Renderer::Impl {
   std::vector<std::byte> band;
   effects::LightSum lightSum;
   std::shared_ptr<const Primitives> primitives = std::make_shared<Primitives>();
-  CopyGuard copyGuard;
   // The same; made when they are wanted first.
   std::shared_ptr<const Primitives> copiesApart, withoutSurfaces;
+  CopyGuard copyGuard;
   RenderStats stats;
   double forgottenCompileMs = 0;
 

@@ -37,8 +37,7 @@ void sumRow(const SurfacePlanes& planes, const glm::ivec4& grid, const Nearness&
             high = std::min((blockRow + blocks.firstY + 1) * side - grid.y, planes.height);
   glm::vec2* const out = blocks.row(blockRow);
   for (int y = low; y < high; ++y) {
-    const float* depth =
-        planes.depth.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(planes.width);
+    const float* depth = planes.depth.data() + planes.rowStart(y);
     for (int x = 0, column = 0; x < planes.width; ++column) {
       const int end = std::min((column + blocks.firstX + 1) * side - grid.x, planes.width);
       glm::vec2 sum(0.0f);
@@ -106,7 +105,7 @@ void unsharpDepth(const SurfacePlanes& planes, const DepthUnsharpBlock& block,
   tbb::parallel_for(0, planes.height, [&](int y) {
     const Place row = placeOf(y + block.grid.y, block.grid.z, blurred.firstY, blurred.rows);
     const glm::vec2 *below = blurred.row(row.low), *above = blurred.row(row.high);
-    const std::size_t first = static_cast<std::size_t>(y) * static_cast<std::size_t>(planes.width);
+    const std::size_t first = planes.rowStart(y);
     for (std::size_t x = 0; x < columns.size(); ++x) {
       const float depth = planes.depth[first + x];
       difference[first + x] = 0;

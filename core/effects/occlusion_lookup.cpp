@@ -1,12 +1,11 @@
 #include "core/effects/occlusion_lookup.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+
+#include "core/effects/rows.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/effects/occlusion_lookup.cpp"
@@ -83,14 +82,13 @@ HWY_INLINE void lookAlong(const OcclusionTask& task, const OcclusionDirection& d
   const I i;
   const V zero = hn::Zero(f), one = all(1.0f), half = all(0.5f);
   const OcclusionLook& look = *task.look;
-  const auto row = [](const glm::vec4& r, const Vec3& v) { return dot({all(r.x), all(r.y), all(r.z)}, v); };
-  const V cosine = row(d.rowZ, s.normal);
+  const V cosine = dot(xyz(d.rowZ), s.normal);
   const M seen = hn::And(there, cosine > zero);
   if (hn::AllFalse(f, seen)) return;
   // The rows give texels: times a texel's size twice, a slope comes out in Å per texel.
   const float square = 1.0f / (d.rowX.x * d.rowX.x + d.rowX.y * d.rowX.y + d.rowX.z * d.rowX.z);
-  const V atX = row(d.rowX, s.point) + all(d.rowX.w), atY = row(d.rowY, s.point) + all(d.rowY.w),
-          atZ = row(d.rowZ, s.point) + all(d.rowZ.w);
+  const V atX = dot(xyz(d.rowX), s.point) + all(d.rowX.w), atY = dot(xyz(d.rowY), s.point) + all(d.rowY.w),
+          atZ = dot(xyz(d.rowZ), s.point) + all(d.rowZ.w);
 
   const auto cornerOf = [&](V at, int count, V& share) {
     const V place = hn::Min(hn::Max(at - half, zero), all(static_cast<float>(count - 1)));
@@ -114,8 +112,8 @@ HWY_INLINE void lookAlong(const OcclusionTask& task, const OcclusionDirection& d
 
   // The tangent plane over the four texels: lower left, lower right, upper left, upper right.
   const V steep = one / hn::Max(cosine, all(1e-3f));
-  const V slopeX = hn::Neg(row(d.rowX, s.normal) * all(square)) * steep,
-          slopeY = hn::Neg(row(d.rowY, s.normal) * all(square)) * steep;
+  const V slopeX = hn::Neg(dot(xyz(d.rowX), s.normal) * all(square)) * steep,
+          slopeY = hn::Neg(dot(xyz(d.rowY), s.normal) * all(square)) * steep;
   const V rise =
       slopeX * (hn::ConvertTo(f, cornerX) + half - atX) + slopeY * (hn::ConvertTo(f, cornerY) + half - atY);
   // A stored normal is off by up to 6e-5 rad (16-bit octahedral).
@@ -143,14 +141,8 @@ HWY_INLINE Sky lookAround(const OcclusionTask& task, int part, const Surfaces& s
   return {sum.hidden * all(task.look->fade.z), sum.sky * all(task.look->fade.z)};
 }
 
-std::size_t firstOf(const SurfacePlanes& planes, int y) {
-  return static_cast<std::size_t>(y) * static_cast<std::size_t>(planes.width);
-}
-
 HWY_INLINE void storeSky(const Sky& sum, std::size_t count, std::uint32_t* out) {
-  const auto stored = [](V share) {
-    return hn::BitCast(U(), hn::ConvertTo(I(), hn::Min(share, all(1.0f)) * all(65535.0f) + all(0.5f)));
-  };
+  const auto stored = [](V share) { return hn::BitCast(U(), unorm16(hn::Min(share, all(1.0f)))); };
   storeSome(U(), hn::Or(stored(sum.hidden), hn::ShiftLeft<16>(stored(sum.sky))), count, out);
 }
 
@@ -160,7 +152,7 @@ void lookRow(const OcclusionTask& task, int y, std::uint32_t* out) {
   const auto lanes = static_cast<int>(laneCount());
   for (int x = 0; x < planes.width; x += lanes) {
     const auto count = static_cast<std::size_t>(std::min(lanes, planes.width - x));
-    const Surfaces s = surfacesAt(planes, firstOf(planes, y) + static_cast<std::size_t>(x), x, y);
+    const Surfaces s = surfacesAt(planes, planes.rowStart(y) + static_cast<std::size_t>(x), x, y);
     storeSky(lookAround(task, 0, s, hn::And(s.there, hn::FirstN(F(), count))), count, out + x);
   }
 }
@@ -180,7 +172,7 @@ void lookRowInParts(const OcclusionTask& task, int y, const SkySums& out) {
       alignas(64) float depth[kMostLanes] = {};
       alignas(64) std::uint32_t normal[kMostLanes] = {};
       for (int k = 0; k < count; ++k) {
-        const std::size_t at = firstOf(planes, y) + static_cast<std::size_t>(x + kOcclusionBlock * k);
+        const std::size_t at = planes.rowStart(y) + static_cast<std::size_t>(x + kOcclusionBlock * k);
         depth[k] = planes.depth[at];
         normal[k] = planes.normal[at];
       }
@@ -253,7 +245,7 @@ void gatherAcross(const OcclusionTask& task, int y, const float* depth, const Co
       storeSome(f, hn::Zero(f), count, out.sky + x);
       continue;
     }
-    Gathering gathering(planes, firstOf(planes, y) + static_cast<std::size_t>(x), x, y, false);
+    Gathering gathering(planes, planes.rowStart(y) + static_cast<std::size_t>(x), x, y, false);
     for (int away = -kOcclusionReach; away <= kOcclusionReach; ++away) {
       const int at = x + away;
       gathering.add(away, hn::LoadU(f, depth + at), hn::LoadU(f, from.hidden + at),
@@ -273,14 +265,14 @@ void gatherUp(const OcclusionTask& task, int y, const ConstSkySums& from, std::u
   const int low = std::max(-kOcclusionReach, -y), high = std::min(kOcclusionReach, planes.height - 1 - y);
   for (int x = 0; x < planes.width; x += lanes) {
     const auto count = static_cast<std::size_t>(std::min(lanes, planes.width - x));
-    const std::size_t here = firstOf(planes, y) + static_cast<std::size_t>(x);
+    const std::size_t here = planes.rowStart(y) + static_cast<std::size_t>(x);
     if (hn::AllTrue(f, hn::LoadU(f, planes.depth.data() + here) <= hn::Zero(f))) {
       storeSome(U(), hn::Zero(U()), count, out + x);
       continue;
     }
     Gathering gathering(planes, here, x, y, true);
     for (int away = low; away <= high; ++away) {
-      const std::size_t at = firstOf(planes, y + away) + static_cast<std::size_t>(x);
+      const std::size_t at = planes.rowStart(y + away) + static_cast<std::size_t>(x);
       gathering.add(away, hn::LoadU(f, planes.depth.data() + at), hn::LoadU(f, from.hidden + at),
                     hn::LoadU(f, from.sky + at));
     }
@@ -300,19 +292,6 @@ HWY_EXPORT(lookRowInParts);
 HWY_EXPORT(gatherAcross);
 HWY_EXPORT(gatherUp);
 
-namespace {
-
-template <typename F>
-void forRows(const SurfacePlanes& planes, F f) {
-  constexpr int kRows = 8;  // for a task
-  tbb::parallel_for(tbb::blocked_range<int>(0, planes.height, kRows), [&](const auto& rows) {
-    for (int y = rows.begin(); y < rows.end(); ++y)
-      f(y, static_cast<std::size_t>(y) * static_cast<std::size_t>(planes.width));
-  });
-}
-
-}  // namespace
-
 int occlusionPartOf(glm::ivec2 inBlock, int parts) {
   // Aligned blocks of a power of two of the directions are evenly spread (core/occlusion_maps.h), and so
   // should be what any few neighbours look along: the four pixels of a quarter are neighbours in this order,
@@ -327,8 +306,8 @@ void lookUpOcclusion(const SurfacePlanes& planes, const OcclusionLook& look,
   occlusion.resize(planes.pixels());
   const OcclusionTask task{&planes, &look};
   if (look.parts == 1) {
-    forRows(planes, [&](int y, std::size_t first) {
-      HWY_DYNAMIC_DISPATCH(lookRow)(task, y, occlusion.data() + first);
+    forRows(planes.height, [&](int y) {
+      HWY_DYNAMIC_DISPATCH(lookRow)(task, y, occlusion.data() + planes.rowStart(y));
     });
     return;
   }
@@ -337,7 +316,8 @@ void lookUpOcclusion(const SurfacePlanes& planes, const OcclusionLook& look,
   const std::size_t pixels = planes.pixels() + kMostLanes;
   ofFrame.resize(2 * pixels);
   const SkySums rows{ofFrame.data(), ofFrame.data() + pixels};
-  forRows(planes, [&](int y, std::size_t first) {
+  forRows(planes.height, [&](int y) {
+    const std::size_t first = planes.rowStart(y);
     const auto width = static_cast<std::size_t>(planes.width);
     thread_local std::vector<float> row;
     row.assign(3 * (width + 2 * kSkyMargin), 0.0f);
@@ -348,9 +328,9 @@ void lookUpOcclusion(const SurfacePlanes& planes, const OcclusionLook& look,
     HWY_DYNAMIC_DISPATCH(gatherAcross)
     (task, y, depth, ConstSkySums{seen.hidden, seen.sky}, SkySums{rows.hidden + first, rows.sky + first});
   });
-  forRows(planes, [&](int y, std::size_t first) {
+  forRows(planes.height, [&](int y) {
     HWY_DYNAMIC_DISPATCH(gatherUp)
-    (task, y, ConstSkySums{rows.hidden, rows.sky}, occlusion.data() + first);
+    (task, y, ConstSkySums{rows.hidden, rows.sky}, occlusion.data() + planes.rowStart(y));
   });
 }
 

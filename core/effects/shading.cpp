@@ -1,12 +1,10 @@
 #include "core/effects/shading.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cstring>
 
 #include "core/effects/nearness.h"
+#include "core/effects/rows.h"
 #include "core/error.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -50,9 +48,6 @@ struct Light {
   V alpha;
 };
 
-HWY_INLINE Vec3 xyz(const glm::vec4& v) {
-  return {all(v.x), all(v.y), all(v.z)};
-}
 constexpr float kUnorm16 = 1.0f / 65535.0f;
 HWY_INLINE V loadShares(const std::uint16_t* from, std::size_t count) {
   return hn::ConvertTo(F(), hn::PromoteTo(I(), loadSome(U16(), from, count))) * all(kUnorm16);
@@ -153,7 +148,7 @@ void shadeRow(const ShadeTask& task, int y, bool add, const LightRow& out) {
   const V zero = hn::Zero(f);
   const SurfacePlanes& planes = *task.planes;
   const auto lanes = static_cast<int>(laneCount());
-  const std::size_t first = static_cast<std::size_t>(y) * static_cast<std::size_t>(planes.width);
+  const std::size_t first = planes.rowStart(y);
   for (int x = 0; x < planes.width; x += lanes) {
     const auto column = static_cast<std::size_t>(x);
     const std::size_t at = first + column;
@@ -259,15 +254,6 @@ HWY_EXPORT(shadeRow);
 HWY_EXPORT(encodeRow);
 
 namespace {
-
-constexpr int kRows = 8;  // for a task
-
-template <typename F>
-void forRows(int height, F f) {
-  tbb::parallel_for(tbb::blocked_range<int>(0, height, kRows), [&](const tbb::blocked_range<int>& rows) {
-    for (int y = rows.begin(); y < rows.end(); ++y) f(y);
-  });
-}
 
 // Encodes the part of a row that is the picture's; what is not lit is backdrop.
 class RowWriter {

@@ -1,9 +1,8 @@
 #include "core/effects/shadow_lookup.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <glm/packing.hpp>
+
+#include "core/effects/rows.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/effects/shadow_lookup.cpp"
@@ -40,16 +39,15 @@ struct Receivers {
 constexpr std::size_t kNumbers = 8;  // of a receiver
 
 Receivers receiversOf(const ShadowFilter& filter, const Surfaces& s, V& facing) {
-  const auto row = [](const glm::vec4& r, const Vec3& v) { return dot({all(r.x), all(r.y), all(r.z)}, v); };
-  const V nz = row(filter.rowZ, s.normal);
+  const V nz = dot(xyz(filter.rowZ), s.normal);
   const float perTexel = filter.map.w / filter.map.z;
   const V toPlane = all(-filter.map.w * perTexel);
   Receivers r;
-  r.x = row(filter.rowX, s.point) + all(filter.rowX.w);
-  r.y = row(filter.rowY, s.point) + all(filter.rowY.w);
-  r.height = (row(filter.rowZ, s.point) + all(filter.rowZ.w)) * all(1 / filter.map.z);
-  r.neededX = row(filter.rowX, s.normal) * toPlane;
-  r.neededY = row(filter.rowY, s.normal) * toPlane;
+  r.x = dot(xyz(filter.rowX), s.point) + all(filter.rowX.w);
+  r.y = dot(xyz(filter.rowY), s.point) + all(filter.rowY.w);
+  r.height = (dot(xyz(filter.rowZ), s.point) + all(filter.rowZ.w)) * all(1 / filter.map.z);
+  r.neededX = dot(xyz(filter.rowX), s.normal) * toPlane;
+  r.neededY = dot(xyz(filter.rowY), s.normal) * toPlane;
   r.neededZ = all(kPositionError + 2 * kNormalError * perTexel * (filter.filter.x + 1));
   r.factorX = all(1.0f) / hn::Max(nz - all(kNormalError), all(1e-9f));
   r.factorY = all(1.0f) / (nz + all(kNormalError));
@@ -148,8 +146,7 @@ void lookUpRows(const ShadowTask& task, int firstRow, int lastRow, std::uint16_t
   Penumbra penumbra(task, out);
   for (int y = firstRow; y < lastRow; ++y) {
     for (int x = 0; x < planes.width; x += lanes) {
-      const auto at =
-          static_cast<std::size_t>(y) * static_cast<std::size_t>(planes.width) + static_cast<std::size_t>(x);
+      const std::size_t at = planes.rowStart(y) + static_cast<std::size_t>(x);
       const auto here = static_cast<std::size_t>(planes.width - x < lanes ? planes.width - x : lanes);
       const Surfaces s = surfacesAt(planes, at, x, y);
       V facing;
@@ -203,11 +200,9 @@ void lookUpShadow(const SurfacePlanes& planes, const ShadowFilter& filter, std::
     task.offsetX[i] = offset.x;
     task.offsetY[i] = offset.y;
   }
-  constexpr int kRows = 8;  // for a task
-  tbb::parallel_for(tbb::blocked_range<int>(0, planes.height, kRows),
-                    [&](const tbb::blocked_range<int>& rows) {
-                      HWY_DYNAMIC_DISPATCH(lookUpRows)(task, rows.begin(), rows.end(), visibility.data());
-                    });
+  forBands(planes.height, [&](int first, int last) {
+    HWY_DYNAMIC_DISPATCH(lookUpRows)(task, first, last, visibility.data());
+  });
 }
 
 }  // namespace meniscus::effects

@@ -18,6 +18,10 @@ namespace meniscus::effects::HWY_NAMESPACE {
 
 using namespace tiles::HWY_NAMESPACE;
 
+HWY_INLINE Vec3 xyz(const glm::vec4& v) {
+  return {all(v.x), all(v.y), all(v.z)};
+}
+
 struct Surfaces {
   Vec3 point, normal;  // view space
   M there;             // not background
@@ -108,9 +112,13 @@ HWY_INLINE void storeSome(D d, hn::Vec<D> v, std::size_t count, hn::TFromD<D>* t
   std::memcpy(to, values, sizeof(*to) * std::min(count, laneCount()));
 }
 
-// Stores shares as R16 does, of the first `count` lanes.
+// As R16 stores a share.
+HWY_INLINE hn::Vec<I> unorm16(V share) {
+  return hn::ConvertTo(I(), share * all(65535.0f) + all(0.5f));
+}
+// Of the first `count` lanes.
 HWY_INLINE void storeShares(V share, std::size_t count, std::uint16_t* out) {
-  storeSome(U16(), hn::DemoteTo(U16(), hn::ConvertTo(I(), share * all(65535.0f) + all(0.5f))), count, out);
+  storeSome(U16(), hn::DemoteTo(U16(), unorm16(share)), count, out);
 }
 
 }  // namespace meniscus::effects::HWY_NAMESPACE

@@ -21,6 +21,10 @@ struct SurfacePlanes {
   std::span<const std::uint32_t> normal;  ///< octahedral, 16 bits each, x in the lower
   std::span<const std::uint32_t> id;      ///< empty where no effect asks for it
 
+  /// Index of a row's first pixel.
+  std::size_t rowStart(int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(width);
+  }
   std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
 };
 

@@ -100,9 +100,7 @@ class Walk {
     M stopped = inside_;  // rays that wait on an interval that may hold a root until all others do
     int waited = 0;
     for (;;) {
-      load([&] { return next_; });
-      live_ = hn::And(live_, next_ < far);
-      if (hn::AllFalse(f, live_)) break;
+      if (!findNext()) break;
       if (atStart) {
         counts_.rays += hn::CountTrue(f, live_);
         if (!balls_.atPlane) inside_ = hn::And(live_, fieldAtStart() > hn::Zero(f));
@@ -111,9 +109,7 @@ class Walk {
       }
       if (count_ >= kManyChords) {
         passMany(hn::AndNot(stopped, live_));
-        load([&] { return next_; });
-        live_ = hn::And(live_, next_ < far);
-        if (hn::AllFalse(f, live_)) break;
+        if (!findNext()) break;
       }
       const M looked = hn::AndNot(stopped, live_);
       counts_.intervals += hn::CountTrue(f, looked);
@@ -175,6 +171,13 @@ class Walk {
       next_ = hn::Min(next_, eventAfter(now_, enter, leave));
       z = zOfEnd();
     }
+  }
+
+  // The next event of each ray; those without any are done. Whether rays are left.
+  HWY_INLINE bool findNext() {
+    load([&] { return next_; });
+    live_ = hn::And(live_, next_ < all(kFar));
+    return !hn::AllFalse(F(), live_);
   }
 
   // F where the rays begin, less than 0 where no support is.
