@@ -1,5 +1,7 @@
 #include "core/effects/shadow_lookup.h"
 
+#include <bit>
+#include <cstring>
 #include <glm/packing.hpp>
 
 #include "core/effects/rows.h"
@@ -17,7 +19,7 @@ struct ShadowTask {
   const SurfacePlanes* planes;
   const ShadowFilter* filter;
   const float* map;
-  std::array<float, kMaxShadowSamples> offsetX, offsetY;  // texels
+  std::array<float, kMaxShadowSamples + kMostLanes> offsetX, offsetY;  // texels
   int samples, probes;
   bool soft;
 };
@@ -55,124 +57,135 @@ Receivers receiversOf(const ShadowFilter& filter, const Surfaces& s, V& facing) 
   return r;
 }
 
+// The map by whole numbers in floats, which are the low bits of what they are together with 2^23.
+struct Texels {
+  explicit Texels(const ShadowTask& task)
+      : first(task.map),
+        lastX(all(task.filter->map.x - 1)),
+        lastY(all(task.filter->map.y - 1)),
+        rowLength(hn::Set(I(), static_cast<std::int32_t>(task.filter->map.x))),
+        magicIndex(hn::BitCast(I(), all(kMagic)) * (rowLength + hn::Set(I(), 1))) {}
+  // Of the nearest texel of the map.
+  HWY_INLINE V heightAt(V x, V y) const {
+    const V zero = hn::Zero(F());
+    const auto bits = [&](V value, V last) {
+      return hn::BitCast(I(), hn::Min(hn::Max(value, zero), last) + all(kMagic));
+    };
+    return hn::GatherIndex(F(), first, bits(y, lastY) * rowLength + bits(x, lastX) - magicIndex);
+  }
+
+  static constexpr float kMagic = 8388608.0f;
+  const float* first;
+  V lastX, lastY;
+  hn::Vec<I> rowLength, magicIndex;
+};
+
 // Where the light does not reach the tangent plane over a texel (whole numbers).
-HWY_INLINE M shadowedAt(const ShadowTask& task, const Receivers& r, V texelX, V texelY) {
-  const F f;
-  const V zero = hn::Zero(f), half = all(0.5f);
-  const glm::vec4& size = task.filter->map;
-  const V x = hn::Min(hn::Max(texelX, zero), all(size.x - 1)),
-          y = hn::Min(hn::Max(texelY, zero), all(size.y - 1));
-  const auto index = hn::ConvertTo(I(), y) * hn::Set(I(), static_cast<int>(size.x)) + hn::ConvertTo(I(), x);
-  const V height = hn::GatherIndex(f, task.map, index);
-  const V needed = r.neededX * (texelX + half - r.x) + r.neededY * (texelY + half - r.y) + r.neededZ;
+HWY_INLINE M shadowedAt(const Texels& texels, const Receivers& r, V texelX, V texelY) {
+  const V height = texels.heightAt(texelX, texelY), half = all(0.5f);
+  const V needed = r.neededX * (texelX - (r.x - half)) + r.neededY * (texelY - (r.y - half)) + r.neededZ;
   const V least = r.height + hn::Max(needed * r.factorX, needed * r.factorY);
-  return height > hn::Max(least, zero);
+  return height > hn::Max(least, hn::Zero(F()));
 }
 
-HWY_INLINE V litSamples(const ShadowTask& task, const Receivers& r, int first, int end) {
+HWY_INLINE V litSamples(const ShadowTask& task, const Texels& texels, const Receivers& r, int first,
+                        int end) {
   V sum = hn::Zero(F());
   for (int i = first; i < end; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const M dark =
-        shadowedAt(task, r, hn::Floor(r.x + all(task.offsetX[k])), hn::Floor(r.y + all(task.offsetY[k])));
+        shadowedAt(texels, r, hn::Floor(r.x + all(task.offsetX[k])), hn::Floor(r.y + all(task.offsetY[k])));
     sum = sum + hn::IfThenZeroElse(dark, all(1.0f));
   }
   return sum;
 }
 
-// The share of all samples that is lit, of which `probed` are of the probes.
-HWY_INLINE V shareOfAll(const ShadowTask& task, const Receivers& r, V probed) {
-  return (probed + litSamples(task, r, task.probes, task.samples)) *
-         all(1 / static_cast<float>(task.samples));
+// How many of the samples from the probes on are lit at one of the receivers: a vector of samples at a time,
+// whose texels lie beside each other.
+HWY_INLINE float litAfterProbes(const ShadowTask& task, const Texels& texels, const Receivers& r) {
+  const F f;
+  std::size_t lit = 0;
+  const auto lanes = static_cast<int>(laneCount());
+  for (int i = task.probes; i < task.samples; i += lanes) {
+    const auto k = static_cast<std::size_t>(i);
+    const M dark = shadowedAt(texels, r, hn::Floor(r.x + hn::LoadU(f, &task.offsetX[k])),
+                              hn::Floor(r.y + hn::LoadU(f, &task.offsetY[k])));
+    const M taken = hn::FirstN(f, static_cast<std::size_t>(std::min(lanes, task.samples - i)));
+    lit += hn::CountTrue(f, hn::AndNot(dark, taken));
+  }
+  return static_cast<float>(lit);
 }
 
 // The four texels around a place, weighted by nearness.
-V litAround(const ShadowTask& task, const Receivers& r) {
+V litAround(const Texels& texels, const Receivers& r) {
   const V half = all(0.5f), one = all(1.0f);
   const V x = hn::Floor(r.x - half), y = hn::Floor(r.y - half);
   const V fx = r.x - half - x, fy = r.y - half - y;
-  const auto lit = [&](V tx, V ty) { return hn::IfThenZeroElse(shadowedAt(task, r, tx, ty), one); };
+  const auto lit = [&](V tx, V ty) { return hn::IfThenZeroElse(shadowedAt(texels, r, tx, ty), one); };
   return mixed(mixed(lit(x, y), lit(x + one, y), fx), mixed(lit(x, y + one), lit(x + one, y + one), fx), fy);
 }
 
-// Pixels whose probes disagree wait here until there are enough of them for whole vectors.
-class Penumbra {
- public:
-  Penumbra(const ShadowTask& task, std::uint16_t* out) : task_(task), out_(out) {}
-
-  void add(M disagree, const Receivers& r, V probed, hn::Vec<I> where) {
-    const F f;
-    const V numbers[kNumbers] = {r.x, r.y, r.height, r.neededX, r.neededY, r.neededZ, r.factorX, r.factorY};
-    for (std::size_t i = 0; i < kNumbers; ++i)
-      hn::CompressStore(numbers[i], disagree, f, numbers_[i] + count_);
-    hn::CompressStore(probed, disagree, f, probed_ + count_);
-    hn::CompressStore(where, hn::RebindMask(I(), disagree), I(), where_ + count_);
-    count_ += hn::CountTrue(f, disagree);
-    if (count_ >= laneCount()) takeFirst(laneCount());
+// Adds the samples after the probes to those receivers' sums for which it is asked.
+V withAllSamples(const ShadowTask& task, const Texels& texels, const Receivers& r, M wanted, V probed) {
+  const F f;
+  alignas(64) float numbers[kNumbers][kMostLanes], sums[kMostLanes];
+  const V of[kNumbers] = {r.x, r.y, r.height, r.neededX, r.neededY, r.neededZ, r.factorX, r.factorY};
+  for (std::size_t i = 0; i < kNumbers; ++i) hn::Store(of[i], f, numbers[i]);
+  hn::Store(probed, f, sums);
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(f, wanted, bits);
+  std::uint64_t left;
+  std::memcpy(&left, bits, sizeof(left));
+  for (; left != 0; left &= left - 1) {
+    const auto k = static_cast<std::size_t>(std::countr_zero(left));
+    const auto number = [&](std::size_t i) { return all(numbers[i][k]); };
+    sums[k] += litAfterProbes(
+        task, texels,
+        {number(0), number(1), number(2), number(3), number(4), number(5), number(6), number(7)});
   }
-  void finish() {
-    if (count_ > 0) takeFirst(count_);
-  }
-
- private:
-  void takeFirst(std::size_t n) {
-    const F f;
-    const auto number = [&](std::size_t i) { return hn::Load(f, numbers_[i]); };
-    const Receivers r{number(0), number(1), number(2), number(3), number(4), number(5), number(6), number(7)};
-    std::uint16_t shares[kMostLanes];
-    storeShares(shareOfAll(task_, r, hn::Load(f, probed_)), n, shares);
-    for (std::size_t k = 0; k < n; ++k) out_[where_[k]] = shares[k];
-    count_ -= n;
-    if (count_ == 0) return;
-    // Fewer than a vector are left.
-    for (auto& column : numbers_) hn::Store(hn::LoadU(f, column + n), f, column);
-    hn::Store(hn::LoadU(f, probed_ + n), f, probed_);
-    hn::Store(hn::LoadU(I(), where_ + n), I(), where_);
-  }
-
-  const ShadowTask& task_;
-  std::uint16_t* out_;
-  std::size_t count_ = 0;
-  alignas(64) float numbers_[kNumbers][3 * kMostLanes] = {};  // CompressStore may write a whole vector
-  alignas(64) float probed_[3 * kMostLanes] = {};
-  alignas(64) std::int32_t where_[3 * kMostLanes] = {};
-};
+  return hn::Load(f, sums);
+}
 
 void lookUpRows(const ShadowTask& task, int firstRow, int lastRow, std::uint16_t* out) {
   const F f;
   const V zero = hn::Zero(f);
   const SurfacePlanes& planes = *task.planes;
+  const Texels texels(task);
   const auto lanes = static_cast<int>(laneCount());
-  Penumbra penumbra(task, out);
   for (int y = firstRow; y < lastRow; ++y) {
     for (int x = 0; x < planes.width; x += lanes) {
       const std::size_t at = planes.rowStart(y) + static_cast<std::size_t>(x);
       const auto here = static_cast<std::size_t>(planes.width - x < lanes ? planes.width - x : lanes);
       const Surfaces s = surfacesAt(planes, at, x, y);
       V facing;
-      const Receivers r = receiversOf(*task.filter, s, facing);
+      Receivers r = receiversOf(*task.filter, s, facing);
       const M wanted = hn::And(hn::And(s.there, hn::FirstN(f, here)), facing > zero);
       if (hn::AllFalse(f, wanted)) {
         storeShares(zero, here, out + at);
         continue;
       }
+      r.x = hn::IfThenElseZero(wanted, r.x);  // a place in the map, whatever the other lanes hold
+      r.y = hn::IfThenElseZero(wanted, r.y);
       if (!task.soft) {
-        storeShares(hn::IfThenElseZero(wanted, litAround(task, r)), here, out + at);
+        storeShares(hn::IfThenElseZero(wanted, litAround(texels, r)), here, out + at);
         continue;
       }
-      const V lit = litSamples(task, r, 0, task.probes), most = all(static_cast<float>(task.probes));
-      const M agree = hn::Or(lit == zero, lit == most);
-      const M disagree = task.probes > 0 ? hn::AndNot(agree, wanted) : wanted;
-      if (hn::AllTrue(f, disagree)) {  // a whole vector already
-        storeShares(shareOfAll(task, r, lit), here, out + at);
-        continue;
+      const V perSample = all(1 / static_cast<float>(task.samples));
+      V share;
+      if (task.probes == 0) {
+        share = litSamples(task, texels, r, 0, task.samples) * perSample;
+      } else {
+        const V probed = litSamples(task, texels, r, 0, task.probes);
+        const M agree = hn::Or(probed == zero, probed == all(static_cast<float>(task.probes)));
+        const M disagree = hn::AndNot(agree, wanted);
+        share = hn::IfThenElseZero(probed > zero, all(1.0f));
+        if (!hn::AllFalse(f, disagree))
+          share =
+              hn::IfThenElse(disagree, withAllSamples(task, texels, r, disagree, probed) * perSample, share);
       }
-      storeShares(hn::IfThenElseZero(hn::And(wanted, lit > zero), all(1.0f)), here, out + at);
-      if (!hn::AllFalse(f, disagree))
-        penumbra.add(disagree, r, lit, hn::Iota(I(), static_cast<std::int32_t>(at)));
+      storeShares(hn::IfThenElseZero(wanted, share), here, out + at);
     }
   }
-  penumbra.finish();
 }
 
 }  // namespace
