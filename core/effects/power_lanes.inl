@@ -30,7 +30,9 @@ HWY_INLINE V powerOfShare(V x, float exponent) {
       ((all(0.32059889f) * s2 + all(0.41219858f)) * s2 + all(0.57707802f)) * s2 + all(0.96179669f);
   const V log2 = hn::ConvertTo(f, e) + (all(2.88539008f) * s + s * s2 * series);
   const V y = hn::Max(all(exponent) * log2, all(-126.0f));
-  const V whole = hn::Round(y), z = (y - whole) * all(0.69314718f);
+  // Round to a whole number, which a float's low bits then hold.
+  const V magic = all(12582912.0f), rounded = y + magic;
+  const V z = (y - (rounded - magic)) * all(0.69314718f);
   const V power =
       ((((((all(1.0f / 5040) * z + all(1.0f / 720)) * z + all(1.0f / 120)) * z + all(1.0f / 24)) * z +
          all(1.0f / 6)) *
@@ -40,7 +42,7 @@ HWY_INLINE V powerOfShare(V x, float exponent) {
        one) *
           z +
       one;
-  const auto scale2 = hn::ShiftLeft<23>(hn::ConvertTo(i, whole) + hn::Set(i, 127));
+  const auto scale2 = hn::ShiftLeft<23>(hn::BitCast(i, rounded) + hn::Set(i, 127));
   return power * hn::BitCast(f, scale2);
 }
 
