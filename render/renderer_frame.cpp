@@ -149,8 +149,7 @@ GBufferRefs Renderer::Impl::buildFrame(FrameGraph& graph, const Frame& frame, co
   if (frame.settings.lines.any()) {
     light.lines = addSilhouette(graph, frame.settings.lines, silhouetteUniforms, shaders, gbuffer, tile.width,
                                 tile.height, reader);
-    if (effects.processor && !frame.settings.lines.creases)
-      graph.leaveOut("program of silhouette", effects.reason);
+    if (effects.processor) graph.leaveOut("program of silhouette", effects.reason);
   } else {
     graph.leaveOut("pass silhouette", "outlines are off");
   }

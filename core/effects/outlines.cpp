@@ -1,5 +1,6 @@
 #include "core/effects/outlines.h"
 
+#include <tbb/blocked_range2d.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -20,25 +21,24 @@ struct OutlineTask {
   const OutlineBlock* block;
   const OutlineGroups* groups;
   int reach;  // from a pixel of a line to one with its border [pixels]
+  bool creases;
+  float sine;  // of the least angle of a crease
 };
 
-/// Surfaces and borders of some rows and of a margin around them, a plane for each number.
-struct OutlineBand {
-  int firstRow = 0, rows = 0, stride = 0;
-  int before = 0;                                            // columns before the picture's first
+/// Surfaces and borders of a part of the picture and of a margin around it, a plane for each number: as many
+/// as stay near to a processor.
+struct OutlinePatch {
+  int left = 0, right = 0, bottom = 0, top = 0;  // of the part
+  int margin = 0, stride = 0;
   std::vector<float> x, y, z, nx, ny, nz, footprint, depth;  // depth: negative outside of the picture
   std::vector<std::uint32_t> group, borders;
 
-  void resize(const OutlineTask& task, int first, int last) {
-    constexpr auto kLanes = static_cast<int>(kMostLanes);
-    const auto wholeVectors = [](int count) { return (count + kLanes - 1) / kLanes * kLanes; };
-    // Borders are wanted `reach` away, and they look one pixel further.
-    const int margin = task.reach + 1;
-    firstRow = first - margin;
-    rows = last - first + 2 * margin;
-    before = wholeVectors(margin);
-    stride = wholeVectors(task.planes->width) + 2 * before;
-    const auto size = static_cast<std::size_t>(rows) * static_cast<std::size_t>(stride);
+  void resize(const OutlineTask& task) {
+    // Borders are wanted `reach` away, and they look one pixel further, creases two.
+    margin = task.reach + (task.creases ? 2 : 1);
+    stride = right - left + 2 * margin + static_cast<int>(kMostLanes);
+    const auto size =
+        static_cast<std::size_t>(top - bottom + 2 * margin) * static_cast<std::size_t>(stride) + kMostLanes;
     for (std::vector<float>* plane : {&x, &y, &z, &nx, &ny, &nz, &footprint}) plane->resize(size);
     depth.assign(size, -1.0f);
     borders.assign(size, 0);
@@ -46,8 +46,8 @@ struct OutlineBand {
   }
   // Of the picture's pixel.
   std::size_t at(int column, int row) const {
-    return static_cast<std::size_t>(row - firstRow) * static_cast<std::size_t>(stride) +
-           static_cast<std::size_t>(column + before);
+    return static_cast<std::size_t>(row - bottom + margin) * static_cast<std::size_t>(stride) +
+           static_cast<std::size_t>(column - left + margin);
   }
 };
 
@@ -66,17 +66,29 @@ struct Side {
 };
 constexpr Side kSides[] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};  // in the order of their bits
 
+// f(first column, row) for the vectors that hold the patch's pixels and the picture's up to `around` beyond
+// them.
+template <typename Body>
+HWY_INLINE void forVectors(const SurfacePlanes& planes, const OutlinePatch& patch, int around, Body f) {
+  const auto lanes = static_cast<int>(laneCount());
+  const int right = std::min(patch.right + around, planes.width),
+            top = std::min(patch.top + around, planes.height);
+  for (int row = std::max(patch.bottom - around, 0); row < top; ++row) {
+    for (int column = std::max(patch.left - around, 0); column < right; column += lanes) f(column, row);
+  }
+}
+
 struct Surface {
   Vec3 point, normal;
   V footprint;
 };
 
-HWY_INLINE Surface surfaceOf(const OutlineBand& band, std::size_t at) {
+HWY_INLINE Surface surfaceOf(const OutlinePatch& patch, std::size_t at) {
   const F f;
   const auto get = [&](const std::vector<float>& plane) { return hn::LoadU(f, plane.data() + at); };
-  return {{get(band.x), get(band.y), get(band.z)},
-          {get(band.nx), get(band.ny), get(band.nz)},
-          get(band.footprint)};
+  return {{get(patch.x), get(patch.y), get(patch.z)},
+          {get(patch.nx), get(patch.ny), get(patch.nz)},
+          get(patch.footprint)};
 }
 
 // Whether there is a step between surfaces that are seen `pixels` apart.
@@ -87,81 +99,107 @@ HWY_INLINE M isApart(const OutlineBlock& block, const Surface& a, const Surface&
   return gap > least + all(block.step.z);
 }
 
-void loadBand(const OutlineTask& task, OutlineBand& band) {
+void load(const OutlineTask& task, OutlinePatch& patch) {
   const F f;
   const SurfacePlanes& planes = *task.planes;
   const f32::ViewBlock& view = planes.view;
   const auto lanes = static_cast<int>(laneCount());
   const std::span<const std::uint32_t> groups = task.groups->byId;
-  const int firstRow = std::max(band.firstRow, 0),
-            lastRow = std::min(band.firstRow + band.rows, planes.height);
-  for (int row = firstRow; row < lastRow; ++row) {
-    const std::size_t from = static_cast<std::size_t>(row) * static_cast<std::size_t>(planes.width);
-    for (int column = 0; column < planes.width; column += lanes) {
-      const std::size_t to = band.at(column, row);
-      const std::size_t here = from + static_cast<std::size_t>(column);
-      const Surfaces s = surfacesAt(planes, here, column, row);
-      const auto put = [&](std::vector<float>& plane, V v) { hn::StoreU(v, f, plane.data() + to); };
-      put(band.x, s.point.x);
-      put(band.y, s.point.y);
-      put(band.z, s.point.z);
-      put(band.nx, s.normal.x);
-      put(band.ny, s.normal.y);
-      put(band.nz, s.normal.z);
-      put(band.footprint,
-          view.scale.z > 0.5f ? all(view.scale.x) * (all(view.depth.x) - s.point.z) : all(view.scale.x));
-      const M inside = hn::FirstN(f, static_cast<std::size_t>(std::min(lanes, planes.width - column)));
-      put(band.depth, hn::IfThenElse(inside, hn::LoadU(f, planes.depth.data() + here), all(-1.0f)));
+  forVectors(planes, patch, patch.margin, [&](int column, int row) {
+    const std::size_t to = patch.at(column, row);
+    const std::size_t here = planes.rowStart(row) + static_cast<std::size_t>(column);
+    const Surfaces s = surfacesAt(planes, here, column, row);
+    const auto put = [&](std::vector<float>& plane, V v) { hn::StoreU(v, f, plane.data() + to); };
+    put(patch.x, s.point.x);
+    put(patch.y, s.point.y);
+    put(patch.z, s.point.z);
+    put(patch.nx, s.normal.x);
+    put(patch.ny, s.normal.y);
+    put(patch.nz, s.normal.z);
+    put(patch.footprint,
+        view.scale.z > 0.5f ? all(view.scale.x) * (all(view.depth.x) - s.point.z) : all(view.scale.x));
+    const int inPicture = std::min(lanes, planes.width - column);
+    const M inside = hn::FirstN(f, static_cast<std::size_t>(inPicture));
+    put(patch.depth, hn::IfThenElse(inside, hn::LoadU(f, planes.depth.data() + here), all(-1.0f)));
+    if (!task.groups->differ) return;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(inPicture); ++k) {
+      const std::uint32_t id = planes.id[here + k];
+      patch.group[to + k] = id < groups.size() ? groups[id] : id;
     }
-    if (!task.groups->differ) continue;
-    for (int column = 0; column < planes.width; ++column) {
-      const std::uint32_t id = planes.id[from + static_cast<std::size_t>(column)];
-      band.group[band.at(column, row)] = id < groups.size() ? groups[id] : id;
-    }
-  }
+  });
+}
+
+// Cosine of how much the normal turns from s to its neighbour if the surface goes on there; otherwise 1.
+HWY_INLINE V cosineTo(const OutlineBlock& block, const OutlinePatch& patch, const Surface& s,
+                      std::size_t there) {
+  const F f;
+  const Surface other = surfaceOf(patch, there);
+  const M goesOn =
+      hn::AndNot(isApart(block, s, other, 1), hn::LoadU(f, patch.depth.data() + there) > hn::Zero(f));
+  return hn::IfThenElse(goesOn, hn::Min(dot(s.normal, other.normal), all(1.0f)), all(1.0f));
+}
+
+// As in silhouette.frag, where they go on. at: here's; step: from one to the other.
+HWY_INLINE M isCrease(const OutlineTask& task, const OutlinePatch& patch, const Surface& here, std::size_t at,
+                      const Surface& other, std::ptrdiff_t step, M goesOn) {
+  const F f;
+  const OutlineBlock& block = *task.block;
+  const V cosine = dot(here.normal, other.normal), least = all(block.crease.y);
+  const M turns = hn::And(goesOn, cosine < least);
+  if (hn::AllFalse(f, turns)) return turns;
+  const M groove = dot(sub(other.normal, here.normal), sub(other.point, here.point)) < hn::Zero(f);
+  const auto place = [&](std::ptrdiff_t steps) {
+    return static_cast<std::size_t>(static_cast<std::ptrdiff_t>(at) + steps * step);
+  };
+  const V curvature = hn::IfThenElse(here.normal.z > other.normal.z, cosineTo(block, patch, here, place(-1)),
+                                     cosineTo(block, patch, other, place(2)));
+  const V sum =
+      least * curvature - all(task.sine) * hn::Sqrt(hn::Max(all(1.0f) - curvature * curvature, hn::Zero(f)));
+  const M ridge = hn::And(curvature > hn::Neg(least), cosine < sum);
+  return hn::And(turns, hn::Or(groove, ridge));
 }
 
 // Two bits for each side of a pixel.
-void findBorders(const OutlineTask& task, OutlineBand& band) {
+template <bool kCreases>
+void findBorders(const OutlineTask& task, OutlinePatch& patch) {
   const F f;
   const U u;
   const V zero = hn::Zero(f);
   const OutlineBlock& block = *task.block;
   const M none = hn::MaskFromVec(zero);
   const M steps = block.step.w > 0.5f ? hn::Not(none) : none;
-  const int lanes = static_cast<int>(laneCount()), width = task.planes->width;
-  const int firstRow = std::max(band.firstRow + 1, 0),
-            lastRow = std::min(band.firstRow + band.rows - 1, task.planes->height);
-  for (int row = firstRow; row < lastRow; ++row) {
-    for (int column = 0; column < width; column += lanes) {
-      const std::size_t at = band.at(column, row);
-      const M wanted = hn::LoadU(f, band.depth.data() + at) > zero;
-      if (hn::AllFalse(f, wanted)) continue;
-      const Surface here = surfaceOf(band, at);
-      auto borders = hn::Zero(u);
-      for (std::uint32_t k = 0; k < 4; ++k) {
-        const std::size_t there = at + static_cast<std::size_t>(kSides[k].y * band.stride + kSides[k].x);
-        const V depth = hn::LoadU(f, band.depth.data() + there);
-        const M surface = depth > zero, background = depth == zero;
-        M differ = none;
-        if (task.groups->differ) {
-          const auto mine = hn::LoadU(u, band.group.data() + at),
-                     other = hn::LoadU(u, band.group.data() + there);
-          differ = hn::Not(hn::RebindMask(f, mine == other));
-        }
-        const M line = hn::Or(steps, differ);
-        const Surface other = surfaceOf(band, there);
-        const M apart = hn::And(surface, isApart(block, here, other, 1));
-        const M whole = hn::And(line, hn::Or(background, hn::And(apart, here.point.z >= other.point.z)));
-        const M half = hn::And(differ, hn::AndNot(apart, surface));
-        const auto kind =
-            hn::Or(hn::IfThenElseZero(hn::RebindMask(u, whole), hn::Set(u, kWholeLine << (2 * k))),
-                   hn::IfThenElseZero(hn::RebindMask(u, half), hn::Set(u, kHalfLine << (2 * k))));
-        borders = hn::Or(borders, kind);
+  forVectors(*task.planes, patch, task.reach, [&](int column, int row) {
+    const std::size_t at = patch.at(column, row);
+    const M wanted = hn::LoadU(f, patch.depth.data() + at) > zero;
+    if (hn::AllFalse(f, wanted)) return;
+    const Surface here = surfaceOf(patch, at);
+    auto borders = hn::Zero(u);
+    for (std::uint32_t k = 0; k < 4; ++k) {
+      const std::ptrdiff_t step = kSides[k].y * patch.stride + kSides[k].x;
+      const auto there = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(at) + step);
+      const V depth = hn::LoadU(f, patch.depth.data() + there);
+      const M surface = depth > zero, background = depth == zero;
+      M differ = none;
+      if (task.groups->differ) {
+        const auto mine = hn::LoadU(u, patch.group.data() + at),
+                   other = hn::LoadU(u, patch.group.data() + there);
+        differ = hn::Not(hn::RebindMask(f, mine == other));
       }
-      hn::StoreU(hn::IfThenElseZero(hn::RebindMask(u, wanted), borders), u, band.borders.data() + at);
+      const M line = hn::Or(steps, differ);
+      const Surface other = surfaceOf(patch, there);
+      const M apart = hn::And(surface, isApart(block, here, other, 1));
+      const M whole = hn::And(line, hn::Or(background, hn::And(apart, here.point.z >= other.point.z)));
+      const M goesOn = hn::AndNot(apart, surface);
+      if constexpr (kCreases)
+        differ = hn::Or(differ, isCrease(task, patch, here, at, other, step, hn::And(wanted, goesOn)));
+      const M half = hn::And(differ, goesOn);
+      const auto kind =
+          hn::Or(hn::IfThenElseZero(hn::RebindMask(u, whole), hn::Set(u, kWholeLine << (2 * k))),
+                 hn::IfThenElseZero(hn::RebindMask(u, half), hn::Set(u, kHalfLine << (2 * k))));
+      borders = hn::Or(borders, kind);
     }
-  }
+    hn::StoreU(hn::IfThenElseZero(hn::RebindMask(u, wanted), borders), u, patch.borders.data() + at);
+  });
 }
 
 struct Squares {
@@ -188,49 +226,48 @@ HWY_INLINE void takeNearer(hn::Vec<U> borders, Side offset, M same, Squares& squ
   }
 }
 
-void drawRow(const OutlineTask& task, const OutlineBand& band, int row, std::uint16_t* out) {
+void drawLines(const OutlineTask& task, const OutlinePatch& patch, std::uint16_t* out) {
   const F f;
   const U u;
   const V zero = hn::Zero(f), half = all(0.5f);
   const OutlineBlock& block = *task.block;
-  const int lanes = static_cast<int>(laneCount()), width = task.planes->width, reach = task.reach;
-  const int low = std::max(row - reach, 0), high = std::min(row + reach, task.planes->height - 1);
-  for (int column = 0; column < width; column += lanes) {
-    const std::size_t at = band.at(column, row);
-    const auto count = static_cast<std::size_t>(std::min(lanes, width - column));
-    const M wanted = hn::LoadU(f, band.depth.data() + at) > zero;
+  const SurfacePlanes& planes = *task.planes;
+  const int lanes = static_cast<int>(laneCount()), reach = task.reach;
+  forVectors(planes, patch, 0, [&](int column, int row) {
+    const std::size_t at = patch.at(column, row);
+    const auto count = static_cast<std::size_t>(std::min(lanes, patch.right - column));
+    std::uint16_t* const to = out + planes.rowStart(row) + static_cast<std::size_t>(column);
+    const M wanted = hn::LoadU(f, patch.depth.data() + at) > zero;
     if (hn::AllFalse(f, wanted)) {
-      storeShares(zero, count, out + static_cast<std::size_t>(column));
-      continue;
+      storeShares(zero, count, to);
+      return;
     }
     Squares squares{all(kFar), all(kFar)};
+    const int low = std::max(row - reach, 0), high = std::min(row + reach, planes.height - 1);
     for (int y = low; y <= high; ++y) {
       for (int x = -reach; x <= reach; ++x) {
-        const std::size_t there = band.at(column + x, y);
-        const auto borders = hn::LoadU(u, band.borders.data() + there);
+        const std::size_t there = patch.at(column + x, y);
+        const auto borders = hn::LoadU(u, patch.borders.data() + there);
         if (hn::AllTrue(u, borders == hn::Zero(u))) continue;
         const Side offset{x, y - row};
         // Else it is another surface's line.
         const float pixels = std::sqrt(static_cast<float>(x * x + offset.y * offset.y));
-        const M same = hn::Not(isApart(block, surfaceOf(band, at), surfaceOf(band, there), pixels));
+        const M same = hn::Not(isApart(block, surfaceOf(patch, at), surfaceOf(patch, there), pixels));
         takeNearer(borders, offset, same, squares);
       }
     }
     const V whole = all(block.crease.z) + half - hn::Sqrt(squares.whole),
             halves = half * all(block.crease.z) + half - hn::Sqrt(squares.half);
     const V share = hn::Min(hn::Max(hn::Max(whole, halves), zero), all(1.0f));
-    storeShares(hn::IfThenElseZero(wanted, share), count, out + static_cast<std::size_t>(column));
-  }
+    storeShares(hn::IfThenElseZero(wanted, share), count, to);
+  });
 }
 
-void drawBand(const OutlineTask& task, int firstRow, int lastRow, std::uint16_t* out) {
-  thread_local OutlineBand band;
-  band.resize(task, firstRow, lastRow);
-  loadBand(task, band);
-  findBorders(task, band);
-  for (int row = firstRow; row < lastRow; ++row)
-    drawRow(task, band, row,
-            out + static_cast<std::size_t>(row) * static_cast<std::size_t>(task.planes->width));
+void drawPatch(const OutlineTask& task, OutlinePatch& patch, std::uint16_t* out) {
+  patch.resize(task);
+  load(task, patch);
+  task.creases ? findBorders<true>(task, patch) : findBorders<false>(task, patch);
+  drawLines(task, patch, out);
 }
 
 }  // namespace
@@ -240,18 +277,30 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace meniscus::effects {
 
-HWY_EXPORT(drawBand);
+HWY_EXPORT(drawPatch);
 
 void drawOutlines(const SurfacePlanes& planes, const OutlineBlock& block, const OutlineGroups& groups,
-                  Shares& lines) {
+                  bool creases, Shares& lines) {
   lines.resize(planes.pixels());
-  const OutlineTask task{&planes, &block, &groups, static_cast<int>(block.crease.w)};
-  const int rows = std::max(16, 4 * task.reach);  // for a task: few of them compared with the margin
-  const int bands = (planes.height + rows - 1) / rows;
-  tbb::parallel_for(0, bands, [&](int band) {
-    HWY_DYNAMIC_DISPATCH(drawBand)
-    (task, band * rows, std::min((band + 1) * rows, planes.height), lines.data());
-  });
+  const float sine = std::sqrt(std::max(1 - block.crease.y * block.crease.y, 0.0f));
+  const OutlineTask task{&planes, &block, &groups, static_cast<int>(block.crease.w), creases, sine};
+  constexpr int kColumns = 128;
+  const int rows = std::max(32, 4 * task.reach);  // few of them beside the margin
+  const auto parts = [](int whole, int part) { return (whole + part - 1) / part; };
+  tbb::parallel_for(
+      tbb::blocked_range2d<int>(0, parts(planes.height, rows), 0, parts(planes.width, kColumns)),
+      [&](const tbb::blocked_range2d<int>& range) {
+        thread_local OutlinePatch patch;
+        for (int y = range.rows().begin(); y < range.rows().end(); ++y) {
+          for (int x = range.cols().begin(); x < range.cols().end(); ++x) {
+            patch.left = kColumns * x;
+            patch.right = std::min(patch.left + kColumns, planes.width);
+            patch.bottom = rows * y;
+            patch.top = std::min(patch.bottom + rows, planes.height);
+            HWY_DYNAMIC_DISPATCH(drawPatch)(task, patch, lines.data());
+          }
+        }
+      });
 }
 
 }  // namespace meniscus::effects

@@ -1,6 +1,6 @@
 #pragma once
-// Silhouettes and lines between groups of atoms: shaders/post/silhouette.frag and silhouette_line.frag for
-// vectors of pixels. Creases are left to the shaders.
+// Silhouettes, creases and lines between groups of atoms: shaders/post/silhouette.frag and
+// silhouette_line.frag for vectors of pixels.
 
 #include <glm/vec4.hpp>
 #include <span>
@@ -21,6 +21,6 @@ struct OutlineGroups {
 
 /// lines: share of each pixel that is line.
 void drawOutlines(const SurfacePlanes& planes, const OutlineBlock& block, const OutlineGroups& groups,
-                  Shares& lines);
+                  bool creases, Shares& lines);
 
 }  // namespace meniscus::effects

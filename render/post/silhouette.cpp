@@ -60,18 +60,20 @@ TextureRef addSilhouette(FrameGraph& graph, const SilhouetteSettings& settings,
     if (settings.groups != LineGroups::atoms && uniforms.groups().object) flags.insert("GROUPS");
     reads.push_back(gbuffer.id);
   }
-  if (reader != nullptr && !settings.creases) {
+  if (reader != nullptr) {
     if (gbuffer.planes.valid()) reads = {gbuffer.planes};
     const TextureRef lines = reader->createResult(graph, "lines", gl::TextureFormat::r16);
-    graph.addPass(
-        "silhouette", reads, {reader->attachment(lines)},
-        [&uniforms, reader, gbuffer, lines, groups = settings.groups](const PassContext& context) {
-          const bool ids = groups != LineGroups::none;
-          const effects::OutlineGroups byGroup{
-              ids, groups == LineGroups::atoms ? std::span<const std::uint32_t>() : uniforms.groupsById()};
-          drawOutlines(reader->read(context, gbuffer, {.id = ids}), uniforms.block(), byGroup, reader->lines);
-          reader->write(context, lines, reader->lines);
-        });
+    graph.addPass("silhouette", reads, {reader->attachment(lines)},
+                  [&uniforms, reader, gbuffer, lines, groups = settings.groups,
+                   creases = settings.creases](const PassContext& context) {
+                    const bool ids = groups != LineGroups::none;
+                    const effects::OutlineGroups byGroup{ids, groups == LineGroups::atoms
+                                                                  ? std::span<const std::uint32_t>()
+                                                                  : uniforms.groupsById()};
+                    drawOutlines(reader->read(context, gbuffer, {.id = ids}), uniforms.block(), byGroup,
+                                 creases, reader->lines);
+                    reader->write(context, lines, reader->lines);
+                  });
     return lines;
   }
   const TextureRef lines = graph.create("lines", {gl::TextureFormat::r16, width, height});

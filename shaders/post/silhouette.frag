@@ -31,27 +31,26 @@ uint groupAt(ivec2 at) {
 #endif
 
 #ifdef CREASES
-float turnBetween(vec3 a, vec3 b) {
-  return acos(clamp(dot(a, b), -1.0, 1.0));
-}
-
-// How much the normal turns from s to its neighbour if the surface goes on there; otherwise 0.
-float turnTo(Surface s, ivec2 there) {
-  if (!isInside(there)) return 0.0;
+// Cosine of how much the normal turns from s to its neighbour if the surface goes on there; otherwise 1.
+float cosineTo(Surface s, ivec2 there) {
+  if (!isInside(there)) return 1.0;
   float depth = texelFetch(tDepth, there, 0).r;
-  if (depth <= 0.0) return 0.0;
+  if (depth <= 0.0) return 1.0;
   Surface other = surfaceAt(there, depth);
-  return isApart(s, other, 1.0) ? 0.0 : turnBetween(s.normal, other.normal);
+  return isApart(s, other, 1.0) ? 1.0 : min(dot(s.normal, other.normal), 1.0);
 }
 
 // A ridge turns the normal by more than the curvature does on the side that faces the viewer more: small
 // spheres, which turn most at their limb, have none.
 bool isCrease(Surface here, ivec2 at, Surface other, ivec2 towards) {
-  if (dot(here.normal, other.normal) >= uCrease.y) return false;
+  float cosine = dot(here.normal, other.normal), least = uCrease.y;
+  if (cosine >= least) return false;
   if (dot(other.normal - here.normal, other.point - here.point) < 0.0) return true;  // a groove
   float curvature =
-      here.normal.z > other.normal.z ? turnTo(here, at - towards) : turnTo(other, at + 2 * towards);
-  return turnBetween(here.normal, other.normal) - curvature > uCrease.x;
+      here.normal.z > other.normal.z ? cosineTo(here, at - towards) : cosineTo(other, at + 2 * towards);
+  // The angles' sum is less than a half turn, and the normals turn by more than that.
+  float sine = sqrt(max(1.0 - least * least, 0.0));
+  return curvature > -least && cosine < least * curvature - sine * sqrt(max(1.0 - curvature * curvature, 0.0));
 }
 #endif
 

@@ -123,7 +123,7 @@ TEST_F(RendererTest, WhereTheProcessorCastsAndShadesNothingGoesThroughTextures) 
   RenderSettings settings = test::withSamples(1, QuadricMethod::tiles);
   settings.shadows.mode = ShadowMode::soft;
   settings.occlusion.on = true;
-  settings.lines.silhouettes = true;
+  settings.lines.silhouettes = settings.lines.creases = true;
   settings.depthUnsharp.mode = UnsharpMode::halo;
   test::MemorySink sink;
   const auto drawnWith = [&] {
@@ -134,9 +134,13 @@ TEST_F(RendererTest, WhereTheProcessorCastsAndShadesNothingGoesThroughTextures) 
   EXPECT_EQ(stats.programs, Names{});
   EXPECT_EQ(names(stats.textures), Names{});
   // What shaders compute of it gets the channels that it reads.
-  settings.lines.creases = true;
+  LabelSprite sprite;
+  sprite.label = {"x", scene->bounds().center, 0.0};
+  sprite.width = sprite.height = 1;
+  sprite.texels.push_back({255, 255});
+  renderer.setLabels({sprite}, {0x2040A0, 0xFFF0E0});
   const Names textures = names(drawnWith().textures);
-  EXPECT_TRUE(std::binary_search(textures.begin(), textures.end(), "normal"));
+  EXPECT_TRUE(std::binary_search(textures.begin(), textures.end(), "depth"));
   EXPECT_FALSE(std::binary_search(textures.begin(), textures.end(), "albedo"));
 }
 
