@@ -21,6 +21,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <map>
+#include <memory>
 
 #include "bench/bench_scenes.h"
 #include "core/light_view.h"
@@ -65,10 +66,22 @@ const Kind kKinds[] = {{"no shadows", {}},
                        {"soft shadows, adaptive", kAdaptive},
                        {"soft shadows, adaptive, lines", kAdaptive, true}};
 
-RenderSettings settingsOf(const ShadowSettings& shadows, bool lines) {
+// How deferred shading is drawn. Only where shading waits for what is visible can the processor shade, or
+// tiles find what is visible.
+struct Way {
+  const char* name;
+  bool onProcessor;
+  QuadricMethod quadrics;
+};
+const Way kWays[] = {{"shaders", false, QuadricMethod::splat},
+                     {"processor", true, QuadricMethod::splat},
+                     {"processor with tiles", true, QuadricMethod::tiles}};
+constexpr std::size_t kWayCount = std::size(kWays);
+
+RenderSettings settingsOf(const ShadowSettings& shadows, bool lines, QuadricMethod quadrics) {
   RenderSettings settings;
   settings.samples = 1;
-  settings.quadrics = QuadricMethod::splat;
+  settings.quadrics = quadrics;
   settings.shadows = shadows;
   settings.lines.silhouettes = settings.lines.creases = lines;
   return settings;
@@ -208,43 +221,45 @@ void measure(const Source& source, int repetitions) {
   const BenchScene scene = loadScene(source.scene, kSize);
   const Lighting lighting;
   DirectRenderer direct(*scene.primitives);
-  Renderer byShaders(optionsOf(false, false)), byProcessor(optionsOf(false, true));
-  Renderer* const deferred[] = {&byShaders, &byProcessor};
-  constexpr const char* kEffects[] = {"shaders", "processor"};
+  std::vector<std::unique_ptr<Renderer>> deferred;
   View view = scene.view;
-  for (Renderer* renderer : deferred) renderer->setPrimitives(scene.primitives);
-  const auto draw = [&](Renderer& renderer, const Kind& kind, RowSink& sink) {
-    renderer.renderPicture(view, lighting, kNothing, settingsOf(kind.shadows, kind.lines), PixelFormat::rgba8,
-                           sink);
+  for (const Way& way : kWays) {
+    deferred.push_back(std::make_unique<Renderer>(optionsOf(false, way.onProcessor)));
+    deferred.back()->setPrimitives(scene.primitives);
+  }
+  const auto draw = [&](std::size_t way, const Kind& kind, RowSink& sink) {
+    deferred[way]->renderPicture(view, lighting, kNothing,
+                                 settingsOf(kind.shadows, kind.lines, kWays[way].quadrics),
+                                 PixelFormat::rgba8, sink);
   };
   constexpr std::size_t kCount = std::size(kKinds);
-  std::vector<double> directMs[kCount], deferredMs[kCount][2];
-  double difference[kCount][2] = {};
+  std::vector<double> directMs[kCount], deferredMs[kCount][kWayCount];
+  double difference[kCount][kWayCount] = {};
   double directTime = 0;
   for (int repetition = -1; repetition < repetitions; ++repetition) {  // the first warms up and compares
     for (std::size_t k = 0; k < kCount; ++k) {
       turn(view);
       if (!kKinds[k].lines) directTime = processorMs([&] { direct.draw(view, lighting, kKinds[k].shadows); });
       if (repetition >= 0) directMs[k].push_back(directTime);
-      for (std::size_t e = 0; e < std::size(deferred); ++e) {
+      for (std::size_t w = 0; w < kWayCount; ++w) {
         if (repetition < 0) {
           ByteSink sink;
-          draw(*deferred[e], kKinds[k], sink);
-          difference[k][e] = differenceOf(sink.bytes, direct.pixels());
+          draw(w, kKinds[k], sink);
+          difference[k][w] = differenceOf(sink.bytes, direct.pixels());
           continue;
         }
         NullSink sink;
-        deferredMs[k][e].push_back(processorMs([&] { draw(*deferred[e], kKinds[k], sink); }));
+        deferredMs[k][w].push_back(processorMs([&] { draw(w, kKinds[k], sink); }));
       }
     }
   }
   for (std::size_t k = 0; k < kCount; ++k) {
-    for (std::size_t e = 0; e < std::size(deferred); ++e) {
-      const double a = median(directMs[k]), b = median(deferredMs[k][e]);
+    for (std::size_t w = 0; w < kWayCount; ++w) {
+      const double a = median(directMs[k]), b = median(deferredMs[k][w]);
       fmt::print("table,\"{}\",{},{},\"{}\",{},{:.1f},{:.1f},{:.2f},{:.2f},{}\n", source.name,
                  scene.primitives->spheres.size(), scene.primitives->cylinders.size(), kKinds[k].name,
-                 kEffects[e], a, b, a / b, source.paperRatio[kKinds[k].shadows.mode != ShadowMode::off],
-                 kKinds[k].lines ? std::string() : fmt::format("{:.5f}", difference[k][e]));
+                 kWays[w].name, a, b, a / b, source.paperRatio[kKinds[k].shadows.mode != ShadowMode::off],
+                 kKinds[k].lines ? std::string() : fmt::format("{:.5f}", difference[k][w]));
       std::fflush(stdout);
     }
   }
@@ -257,7 +272,8 @@ void measure(const Source& source, int repetitions) {
     for (const PassStats& pass : timed.stats().passes) before[pass.name] = pass.milliseconds;
     NullSink sink;
     turn(view);
-    timed.renderPicture(view, lighting, kNothing, settingsOf(shadows, true), PixelFormat::rgba8, sink);
+    timed.renderPicture(view, lighting, kNothing, settingsOf(shadows, true, QuadricMethod::splat),
+                        PixelFormat::rgba8, sink);
     for (const PassStats& pass : timed.stats().passes) {
       const double ms = pass.milliseconds - before[pass.name];
       if (ms <= 0) continue;
