@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstring>
 
-#include "core/effects/nearness.h"
 #include "core/effects/rows.h"
 #include "core/error.h"
 
@@ -136,9 +135,7 @@ HWY_INLINE Light surfaceLight(const ShadeTask& task, std::size_t at, int x, int 
     l.color = {shifted(l.color.x), shifted(l.color.y), shifted(l.color.z)};
   }
   if (b.fog.x > 0) {
-    const Nearness& n = task.nearness;
-    const V near = n.perspective ? depth * all(n.factor) / (depth + all(n.added)) : depth * all(n.factor);
-    const V away = one - near;
+    const V away = one - nearnessOf(task.nearness, depth);
     const V fog = all(b.fog.x) * hn::Min(hn::Max((away - all(b.fog.y)) * all(b.fog.z), zero), one);
     const V through = one - fog;
     l = {scale(l.color, through), l.alpha * through};

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "core/effects/nearness.h"
 #include "core/effects/surface_planes.h"
 #include "core/tiles/lanes.inl"
 
@@ -88,6 +89,11 @@ HWY_INLINE Surfaces surfaceOf(const SurfacePlanes& planes, V value, hn::Vec<U> n
 HWY_INLINE Surfaces surfacesAt(const SurfacePlanes& planes, std::size_t at, int x, int y) {
   return surfaceOf(planes, hn::LoadU(F(), planes.depth.data() + at), hn::LoadU(U(), planes.normal.data() + at),
                    slopesAt(planes, x, y));
+}
+
+HWY_INLINE V nearnessOf(const Nearness& n, V depth) {
+  const V along = depth * all(n.factor);
+  return n.perspective ? along / (depth + all(n.added)) : along;
 }
 
 using U16 = hn::Rebind<std::uint16_t, F>;
