@@ -180,23 +180,25 @@ HWY_INLINE bool keepNearest(const Chord& chord, const QuadricRecord& q, std::uin
 bool castOne(const QuadricRecord& q, std::uint32_t index, const Kept& kept, const TileRays& rays, State& s) {
   const auto x0 = static_cast<float>(q.pixelX - rays.cornerX),
              y0 = static_cast<float>(q.pixelY - rays.cornerY);
-  const auto isHidden = [&](std::size_t k) {
-    return hn::AllTrue(F(), hn::Load(F(), s.z + k) > all(q.front));
+  // Whether none of a vector of rays can meet it in front of what is there.
+  const auto isPassed = [&](std::size_t k) {
+    const auto lowest = static_cast<float>(k / kTileSize) + 0.5f,
+               highest = static_cast<float>((k + laneCount() - 1) / kTileSize) + 0.5f;
+    return y0 + q.highY < lowest || y0 + q.lowY > highest ||
+           hn::AllTrue(F(), hn::Load(F(), s.z + k) > all(q.front));
   };
   bool any = false;
   switch (q.kind) {
     case QuadricKind::sphere:
       for (std::size_t k = 0; k < kTilePixels; k += laneCount()) {
-        const auto lowest = static_cast<float>(k / kTileSize) + 0.5f,
-                   highest = static_cast<float>((k + laneCount() - 1) / kTileSize) + 0.5f;
-        if (y0 + q.highY < lowest || y0 + q.lowY > highest || isHidden(k)) continue;
+        if (isPassed(k)) continue;
         const Chord c = sphereChord(rayOf(rays, s, q, x0, y0, k), all(q.radius));
         any = keepNearest(c, q, index, kept, rays, k, s) || any;
       }
       break;
     case QuadricKind::cylinder:
       for (std::size_t k = 0; k < kTilePixels; k += laneCount()) {
-        if (isHidden(k)) continue;
+        if (isPassed(k)) continue;
         const Chord c =
             cylinderChord(rayOf(rays, s, q, x0, y0, k), splat(q.axisU), all(q.radii[0]), all(q.radius));
         any = keepNearest(c, q, index, kept, rays, k, s) || any;
@@ -204,7 +206,7 @@ bool castOne(const QuadricRecord& q, std::uint32_t index, const Kept& kept, cons
       break;
     case QuadricKind::ellipsoid:
       for (std::size_t k = 0; k < kTilePixels; k += laneCount()) {
-        if (isHidden(k)) continue;
+        if (isPassed(k)) continue;
         const Chord c = ellipsoidChord(rayOf(rays, s, q, x0, y0, k), q);
         any = keepNearest(c, q, index, kept, rays, k, s) || any;
       }

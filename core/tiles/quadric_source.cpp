@@ -131,7 +131,7 @@ void QuadricSource::record(std::size_t index, QuadricRecord& out) const {
   out = {};
   out.lowY = -std::numeric_limits<float>::infinity();
   out.highY = std::numeric_limits<float>::infinity();
-  glm::dvec3 center;
+  glm::dvec3 center, along;  // along: a cylinder's ends
   double size = 0, reach = 0;
   if (q.sphere) {
     const SpherePrimitive& s = *q.sphere;
@@ -145,7 +145,7 @@ void QuadricSource::record(std::size_t index, QuadricRecord& out) const {
     const CylinderPrimitive& c = *q.cylinder;
     out.kind = QuadricKind::cylinder;
     center = 0.5 * (glm::dvec3(c.a) + glm::dvec3(c.b));
-    const glm::dvec3 along = turn(glm::dvec3(c.b) - glm::dvec3(c.a));
+    along = turn(glm::dvec3(c.b) - glm::dvec3(c.a));
     const double length = glm::length(along);
     out.radius = c.radius;
     out.radii[0] = static_cast<float>(0.5 * length);
@@ -181,7 +181,11 @@ void QuadricSource::record(std::size_t index, QuadricRecord& out) const {
   out.centerZ = static_cast<float>(p.view.z);
   out.eyeAbove = static_cast<float>(projection_.eyeZ() - p.view.z);
   out.front = static_cast<float>(p.view.z + reach);
-  if (out.kind == QuadricKind::sphere) projection_.rowsOf(p, out.radius, out.lowY, out.highY);
+  if (q.cylinder) {
+    projection_.rowsOf(p, along, static_cast<double>(q.cylinder->radius), out.lowY, out.highY);
+  } else {
+    projection_.rowsOf(p, static_cast<float>(size), out.lowY, out.highY);
+  }
   const double range = projection_.range(p);
   out.rangeHi = static_cast<float>(range);
   out.rangeLo = static_cast<float>(range - static_cast<double>(out.rangeHi));

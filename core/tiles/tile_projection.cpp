@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 
 namespace meniscus::tiles {
 
@@ -103,6 +104,27 @@ void TileProjection::rowsOf(const ProjectedPoint& center, float radius, float& l
   const float spare = kRounding * perPixel * std::max(std::abs(y.low), std::abs(y.high)) + kSpare;
   low = y.low * perPixel - spare;
   high = y.high * perPixel + spare;
+}
+
+void TileProjection::rowsOf(const ProjectedPoint& center, const glm::dvec3& along, double radius, float& low,
+                            float& high) const {
+  // Of the ends' spheres. A sphere's tangents with slope t, seen at the slope s and the depth d:
+  // |t - s| = r / d sqrt(1 + t^2) <= r / d (sqrt(1 + s^2) + |t - s|).
+  constexpr double kLeastDepth = 16, kWidening = 16.0 / 15 + 1e-6;  // radii
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (const double side : {-0.5, 0.5}) {
+    const double y = center.view.y + side * along.y;
+    const double depth = perspective_ ? center.depth - side * along.z : 1.0;
+    if (perspective_ && !(depth > kLeastDepth * radius)) return;
+    const double slope = perspective_ ? y / depth : 0.0;
+    const double reach = kWidening * radius * std::sqrt(1 + slope * slope);
+    least = std::min(least, (y - reach) / depth);
+    most = std::max(most, (y + reach) / depth);
+  }
+  constexpr double kSpare = 0.01;  // pixels
+  const double middle = center.view.y / center.depth;
+  low = static_cast<float>((least - middle) / pixelSize_ - kSpare);
+  high = static_cast<float>((most - middle) / pixelSize_ + kSpare);
 }
 
 void TileProjection::placeBalls(const RigidMotion& motion, const Cluster& cluster,

@@ -43,6 +43,9 @@ class TileProjection {
                   Placement* out) const;
   /// Bounds of a sphere's rows, relative to its projected centre [pixels]; untouched if it has none.
   void rowsOf(const ProjectedPoint& center, float radius, float& low, float& high) const;
+  /// The same of a cylinder or capsule. along: from its one end to the other, in view space.
+  void rowsOf(const ProjectedPoint& center, const glm::dvec3& along, double radius, float& low,
+              float& high) const;
   /// axisA, axisB, axisC: semi-axes in world directions.
   Placement placeEllipsoid(const glm::dvec3& center, const glm::dvec3 (&axes)[3]) const;
   /// Both end discs of a cylinder.
