@@ -71,11 +71,17 @@ inline Planes castByLists(const Primitives& primitives, const TileTarget& target
 }
 
 // Every tile's rays against every primitive.
+// Every ray of every tile against every primitive.
 inline Planes castByForce(const Primitives& primitives, const TileTarget& target) {
+  constexpr float kFar = std::numeric_limits<float>::infinity();
   const QuadricSource source(primitives, target);
   std::vector<QuadricRecord> records;
   for (std::size_t i = 0; i < source.size(); ++i) {
-    if (source.place(i).visible()) source.record(i, records.emplace_back());
+    if (!source.place(i).visible()) continue;
+    QuadricRecord& record = records.emplace_back();
+    source.record(i, record);
+    record.lowY = -kFar;
+    record.highY = record.front = kFar;
   }
   std::vector<std::uint32_t> list(records.size());
   std::iota(list.begin(), list.end(), 0u);
@@ -88,7 +94,7 @@ inline Planes castByForce(const Primitives& primitives, const TileTarget& target
     for (int column = 0; column < grid.columns; ++column) {
       const int x = grid.x + column * kTileSize, y = grid.y + row * kTileSize;
       moveRays(rays, target, x, y);
-      castQuadrics(records, list, std::numeric_limits<float>::infinity(), rays, kAll, pixels);
+      castQuadrics(records, list, kFar, rays, kAll, pixels);
       storeTile(pixels, x, y, planes);
     }
   }
