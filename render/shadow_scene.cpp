@@ -71,6 +71,7 @@ std::vector<float> ShadowScene::visibility(const ShadowSettings& settings, int s
   const TextureRef result =
       addShadow(graph, settings, map_, shadowUniforms_, shaders_, gbuffer, tile_.width, tile_.height);
   graph.want(result);
+  glBindBufferBase(GL_UNIFORM_BUFFER, 0, viewUniforms_.object.name());  // another's may be there by now
   glFinish();
   const std::clock_t start = std::clock();
   graph.execute(stats_, false);

@@ -65,8 +65,9 @@ HWY_INLINE float leastSquare(float shininess) {
   return std::max((2 - bound) / (2 + bound), 1e-12f);
 }
 
-// lit() of include/lighting.glsl.
-HWY_INLINE Vec3 lit(const ShadeBlock& b, const Vec3& albedo, const Vec3& normal, const Vec3& toEye, V visible,
+// lit() of include/lighting.glsl. toEye(): unit vectors.
+template <typename ToEye>
+HWY_INLINE Vec3 lit(const ShadeBlock& b, const Vec3& albedo, const Vec3& normal, ToEye toEye, V visible,
                     V sky) {
   const F f;
   const V zero = hn::Zero(f);
@@ -74,11 +75,12 @@ HWY_INLINE Vec3 lit(const ShadeBlock& b, const Vec3& albedo, const Vec3& normal,
   const V fill = hn::Max(dot(normal, xyz(b.fill)), zero) * all(b.fill.w);
   const V around = (fill + all(b.ambient.x)) * sky;
   const Vec3 diffuse = scale(albedo, key + around);
-  if (!(b.ambient.y > 0)) return diffuse;
-  const Vec3 halfway = add(add(xyz(b.key), toEye), {zero, zero, all(1e-6f)});
+  const M reached = key > zero;
+  if (!(b.ambient.y > 0) || hn::AllFalse(f, reached)) return diffuse;
+  const Vec3 halfway = add(add(xyz(b.key), toEye()), {zero, zero, all(1e-6f)});
   const V cosine = hn::Max(dot(normal, halfway), zero);  // times halfway's length
   const V square = cosine * cosine / dot(halfway, halfway), least = all(leastSquare(b.ambient.z));
-  const M bright = hn::And(key > zero, square > least);
+  const M bright = hn::And(reached, square > least);
   if (hn::AllFalse(f, bright)) return diffuse;
   const V mirrored = powerOfShare(hn::Max(square, least), 0.5f * b.ambient.z);
   const float fullFrom = std::max(0.1f * b.key.w, 1e-30f);
@@ -106,11 +108,11 @@ HWY_INLINE Light surfaceLight(const ShadeTask& task, std::size_t at, int x, int 
   const SurfacePlanes& planes = *task.planes;
   const ShadeBlock& b = *task.block;
   const LightPlanes& light = *task.light;
-  Vec3 toEye{zero, zero, one};
-  if (planes.view.scale.z > 0.5f) {
+  const auto toEye = [&] {
+    if (!(planes.view.scale.z > 0.5f)) return Vec3{zero, zero, one};
     const Slopes slopes = slopesAt(planes, x, y);
-    toEye = normalized({hn::Neg(slopes.x), hn::Neg(slopes.y), one});
-  }
+    return normalized({hn::Neg(slopes.x), hn::Neg(slopes.y), one});
+  };
   V visible = one, sky = one;
   if (!light.visibility.empty()) visible = loadShares(light.visibility.data() + at, count);
   if (!light.occlusion.empty()) {
