@@ -5,7 +5,8 @@
 
 namespace meniscus::effects {
 
-/// Of a value of the depth buffer: 0 on the far plane, 1 on the near plane.
+/// Of a value d of the depth buffer, 0 on the far plane, 1 on the near plane: d factor / (d + added) in
+/// perspective, d factor otherwise.
 struct Nearness {
   bool perspective;
   float factor, added;
@@ -13,9 +14,6 @@ struct Nearness {
   explicit Nearness(const f32::ViewBlock& view) : perspective(view.scale.z > 0.5f), added(view.depthMap.x) {
     const float range = view.depth.z - view.depth.w;
     factor = perspective ? (view.depth.x - view.depth.w) / range : 1 / (view.depthMap.x * range);
-  }
-  float operator()(float depth) const {
-    return perspective ? depth * factor / (depth + added) : depth * factor;
   }
 };
 

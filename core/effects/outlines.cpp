@@ -22,7 +22,6 @@ struct OutlineTask {
   const OutlineGroups* groups;
   int reach;  // from a pixel of a line to one with its border [pixels]
   bool creases;
-  float sine;  // of the least angle of a crease
 };
 
 /// Surfaces and borders of a part of the picture and of a margin around it, a plane for each number: as many
@@ -153,8 +152,8 @@ HWY_INLINE M isCrease(const OutlineTask& task, const OutlinePatch& patch, const 
   };
   const V curvature = hn::IfThenElse(here.normal.z > other.normal.z, cosineTo(block, patch, here, place(-1)),
                                      cosineTo(block, patch, other, place(2)));
-  const V sum =
-      least * curvature - all(task.sine) * hn::Sqrt(hn::Max(all(1.0f) - curvature * curvature, hn::Zero(f)));
+  const V sum = least * curvature -
+                all(block.crease.x) * hn::Sqrt(hn::Max(all(1.0f) - curvature * curvature, hn::Zero(f)));
   const M ridge = hn::And(curvature > hn::Neg(least), cosine < sum);
   return hn::And(turns, hn::Or(groove, ridge));
 }
@@ -282,8 +281,7 @@ HWY_EXPORT(drawPatch);
 void drawOutlines(const SurfacePlanes& planes, const OutlineBlock& block, const OutlineGroups& groups,
                   bool creases, Shares& lines) {
   lines.resize(planes.pixels());
-  const float sine = std::sqrt(std::max(1 - block.crease.y * block.crease.y, 0.0f));
-  const OutlineTask task{&planes, &block, &groups, static_cast<int>(block.crease.w), creases, sine};
+  const OutlineTask task{&planes, &block, &groups, static_cast<int>(block.crease.w), creases};
   constexpr int kColumns = 128;
   const int rows = std::max(32, 4 * task.reach);  // few of them beside the margin
   const auto parts = [](int whole, int part) { return (whole + part - 1) / part; };

@@ -58,11 +58,11 @@ HWY_INLINE V loadStrided(const T* from, std::size_t count, std::size_t stride, f
   return hn::Load(F(), values) * all(unit);
 }
 
-// A highlight is nothing where the squared cosine of its angle is no larger, and less than 1e-8 of its light
-// by x^p <= exp(-2 p (1 - x) / (1 + x)).
+// A highlight is nothing where the squared cosine of its angle is no larger: less than 1e-8 of its light by
+// x^p <= exp(-2 p (1 - x) / (1 + x)), or seen along the surface.
 HWY_INLINE float leastSquare(float shininess) {
   const float bound = 18.5f / (0.5f * shininess);
-  return std::max((2 - bound) / (2 + bound), 1e-12f);
+  return std::max(1e-12f, (2 - bound) / (2 + bound));  // the former, too, if shininess is 0
 }
 
 // lit() of include/lighting.glsl. toEye(): unit vectors.
@@ -206,8 +206,6 @@ void encodeRow(const EncodeTask& task, const LitRow& row, std::size_t count, std
   const F f;
   const U u;
   const V zero = hn::Zero(f), one = all(1.0f), per = all(task.perSample);
-  constexpr float kMagic = 8388608.0f;  // 2^23
-  const auto magic = hn::BitCast(u, all(kMagic));
   const std::size_t lanes = laneCount();
   const float most = task.format == PixelFormat::rgba8 ? 255.0f : 65535.0f;
   const std::size_t pixelBytes = bytesPerPixel(task.format);
@@ -235,9 +233,8 @@ void encodeRow(const EncodeTask& task, const LitRow& row, std::size_t count, std
       }
       continue;
     }
-    // The nearest whole number, in a float's low bits.
     const auto stored = [&](V share) {  // not above 1 but for rounding
-      return hn::BitCast(u, hn::Min(share, one) * all(most) + all(kMagic)) - magic;
+      return hn::BitCast(u, nearestWhole(hn::Min(share, one) * all(most)));
     };
     const auto channel = [&](V straight) {
       return stored(srgbFromLinear(hn::Min(hn::Max(straight, zero), one)));

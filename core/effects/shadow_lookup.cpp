@@ -57,27 +57,24 @@ Receivers receiversOf(const ShadowFilter& filter, const Surfaces& s, V& facing) 
   return r;
 }
 
-// The map by whole numbers in floats, which are the low bits of what they are together with 2^23.
+// The map by whole numbers in floats.
 struct Texels {
   explicit Texels(const ShadowTask& task)
       : first(task.map),
         lastX(all(task.filter->map.x - 1)),
         lastY(all(task.filter->map.y - 1)),
         rowLength(hn::Set(I(), static_cast<std::int32_t>(task.filter->map.x))),
-        magicIndex(hn::BitCast(I(), all(kMagic)) * (rowLength + hn::Set(I(), 1))) {}
+        above(bitsOfTwoTo23() * (rowLength + hn::Set(I(), 1))) {}
   // Of the nearest texel of the map.
   HWY_INLINE V heightAt(V x, V y) const {
     const V zero = hn::Zero(F());
-    const auto bits = [&](V value, V last) {
-      return hn::BitCast(I(), hn::Min(hn::Max(value, zero), last) + all(kMagic));
-    };
-    return hn::GatherIndex(F(), first, bits(y, lastY) * rowLength + bits(x, lastX) - magicIndex);
+    const auto bits = [&](V value, V last) { return bitsWithTwoTo23(hn::Min(hn::Max(value, zero), last)); };
+    return hn::GatherIndex(F(), first, bits(y, lastY) * rowLength + bits(x, lastX) - above);
   }
 
-  static constexpr float kMagic = 8388608.0f;
   const float* first;
   V lastX, lastY;
-  hn::Vec<I> rowLength, magicIndex;
+  hn::Vec<I> rowLength, above;  // above: what 2^23 adds to an index
 };
 
 // Where the light does not reach the tangent plane over a texel (whole numbers).

@@ -1,4 +1,4 @@
-// Points and normals of vectors of pixels, by the formulas of shaders/shared/projection.glsl (viewPoint) and
+// Points, normals and nearness of vectors of pixels, by the formulas of shaders/shared/projection.glsl (viewPoint) and
 // octahedral.glsl.
 #if defined(MENISCUS_EFFECTS_SURFACE_LANES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MENISCUS_EFFECTS_SURFACE_LANES_INL

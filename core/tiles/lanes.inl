@@ -32,6 +32,18 @@ HWY_INLINE V all(float x) {
   return hn::Set(F(), x);
 }
 
+// The nearest whole number to 0 <= v < 2^23 is in the low bits of the float v + 2^23. Conversions would ask for
+// numbers out of range first.
+HWY_INLINE hn::Vec<I> bitsOfTwoTo23() {
+  return hn::BitCast(I(), all(8388608.0f));
+}
+HWY_INLINE hn::Vec<I> bitsWithTwoTo23(V v) {
+  return hn::BitCast(I(), v + all(8388608.0f));
+}
+HWY_INLINE hn::Vec<I> nearestWhole(V v) {
+  return bitsWithTwoTo23(v) - bitsOfTwoTo23();
+}
+
 struct Vec3 {
   V x, y, z;
 };

@@ -180,7 +180,8 @@ void QuadricSource::record(std::size_t index, QuadricRecord& out) const {
   out.centerY = static_cast<float>(p.view.y);
   out.centerZ = static_cast<float>(p.view.z);
   out.eyeAbove = static_cast<float>(projection_.eyeZ() - p.view.z);
-  out.front = static_cast<float>(p.view.z + reach);
+  const double spare = 1e-6 * (std::abs(p.view.z) + 2 * reach);
+  out.front = static_cast<float>(p.view.z + reach + spare);
   if (q.cylinder) {
     projection_.rowsOf(p, along, static_cast<double>(q.cylinder->radius), out.lowY, out.highY);
   } else {

@@ -20,7 +20,7 @@ struct QuadricRecord {
   float eyeAbove;                   ///< z of the eye above the centre
   float radius;                     ///< sphere, cylinder
   float lowY, highY;                ///< no ray farther from pixelY meets it [pixels]; rounding included
-  float front;                      ///< largest z of its points in view space
+  float front;                      ///< largest z of its points in view space; rounding included
   float rangeHi, rangeLo;           ///< distance of the centre along its ray
   QuadricKind kind;
   std::uint32_t fromEye;               ///< take the rays from the eye

@@ -121,10 +121,12 @@ void TileProjection::rowsOf(const ProjectedPoint& center, const glm::dvec3& alon
     least = std::min(least, (y - reach) / depth);
     most = std::max(most, (y + reach) / depth);
   }
-  constexpr double kSpare = 0.01;  // pixels
+  constexpr double kSpare = 0.01, kOfExtent = 1e-6;  // pixels
   const double middle = center.view.y / center.depth;
-  low = static_cast<float>((least - middle) / pixelSize_ - kSpare);
-  high = static_cast<float>((most - middle) / pixelSize_ + kSpare);
+  const double below = (least - middle) / pixelSize_, above = (most - middle) / pixelSize_;
+  const double spare = kSpare + kOfExtent * std::max(std::abs(below), std::abs(above));
+  low = static_cast<float>(below - spare);
+  high = static_cast<float>(above + spare);
 }
 
 void TileProjection::placeBalls(const RigidMotion& motion, const Cluster& cluster,

@@ -20,7 +20,7 @@ constexpr double kLeastStep = 2;
 // Of the scene's depth range: float32 depths, twice over, and the tangent planes they are measured from.
 constexpr double kRounding = 1e-6;
 
-// The largest offset between a pixel of a line and one with its border (coverage() in silhouette_line.frag):
+// The largest offset between a pixel of a line and one with its border (silhouette_line.frag):
 // along the border, half a pixel off.
 double lineReach(double width) {
   return std::ceil(std::sqrt((width + 0.5) * (width + 0.5) - 0.25) - 1);
@@ -32,9 +32,10 @@ void SilhouetteUniforms::set(const SilhouetteSettings& settings, const View& vie
   MENISCUS_CHECK(settings.width > 0 && settings.width <= kMaxLineWidth);
   if (!buffer_.object) buffer_ = gl::Buffer::updatable(sizeof(effects::OutlineBlock));
   const double angle = glm::radians(settings.creaseAngleDeg);
-  block_ = {glm::vec4(glm::dvec4(kLeastStep, settings.gap, kRounding * (view.nearZ - view.farZ),
-                                 settings.silhouettes ? 1.0 : 0.0)),
-            glm::vec4(glm::dvec4(angle, std::cos(angle), settings.width, lineReach(settings.width)))};
+  block_ = {
+      glm::vec4(glm::dvec4(kLeastStep, settings.gap, kRounding * (view.nearZ - view.farZ),
+                           settings.silhouettes ? 1.0 : 0.0)),
+      glm::vec4(glm::dvec4(std::sin(angle), std::cos(angle), settings.width, lineReach(settings.width)))};
   buffer_.update(&block_);
 }
 

@@ -43,7 +43,7 @@ class SilhouetteUniforms {
 int reachOf(const SilhouetteSettings& settings);
 
 /// Adds two passes. Returns the share of each pixel that is line (0 on the background). reader: if the
-/// processor draws lines, in one pass; creases are left to the shaders even then. Must outlive the graph.
+/// processor draws lines, in one pass. Must outlive the graph.
 TextureRef addSilhouette(FrameGraph& graph, const SilhouetteSettings& settings,
                          const SilhouetteUniforms& uniforms, ShaderLibrary& shaders,
                          const GBufferRefs& gbuffer, int width, int height, SurfaceReader* reader = nullptr);

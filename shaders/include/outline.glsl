@@ -10,7 +10,7 @@ layout(binding = 1) uniform sampler2D tNormal;
 
 layout(std140, binding = 1) uniform SilhouetteUniforms {
   vec4 uStep;  // least step: x [pixels], y [Å]; z: what rounding can amount to [Å]; w: 1 if steps raise lines
-  vec4 uCrease;  // x: least angle [rad]; y: its cosine; z: width of a line [pixels]; w: how far its
+  vec4 uCrease;  // x, y: sine and cosine of the least angle; z: width of a line [pixels]; w: how far its
                  // pixels are from the borders' pixels, at most
 };
 

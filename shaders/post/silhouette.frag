@@ -49,8 +49,8 @@ bool isCrease(Surface here, ivec2 at, Surface other, ivec2 towards) {
   float curvature =
       here.normal.z > other.normal.z ? cosineTo(here, at - towards) : cosineTo(other, at + 2 * towards);
   // The angles' sum is less than a half turn, and the normals turn by more than that.
-  float sine = sqrt(max(1.0 - least * least, 0.0));
-  return curvature > -least && cosine < least * curvature - sine * sqrt(max(1.0 - curvature * curvature, 0.0));
+  float across = sqrt(max(1.0 - curvature * curvature, 0.0));
+  return curvature > -least && cosine < least * curvature - uCrease.x * across;
 }
 #endif
 

@@ -70,7 +70,6 @@ inline Planes castByLists(const Primitives& primitives, const TileTarget& target
   return spread(planes, target);
 }
 
-// Every tile's rays against every primitive.
 // Every ray of every tile against every primitive.
 inline Planes castByForce(const Primitives& primitives, const TileTarget& target) {
   constexpr float kFar = std::numeric_limits<float>::infinity();

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
 #include <limits>
 
 #include "core/tiles/instruction_sets.h"
@@ -98,6 +100,39 @@ TEST_P(Tiles, InstructionSetsGiveTheSameBits) {
     useInstructionSet(set);
     EXPECT_EQ(instructionSet(), set);
     expectSame(castByLists(primitives, target), widest, set.c_str());
+  }
+}
+
+// So near to each other and so large on the screen that rounding decides which is in front: no bound of one
+// may.
+TEST_P(Tiles, CoincidentEllipsoidsGiveTheSameBits) {
+  test::Random random(11);
+  const bool perspective = GetParam() == Projection::perspective;
+  for (int i = 0; i < 150; ++i) {
+    const glm::dmat3 axes(glm::mat3_cast(random.rotation()));
+    const glm::dvec3 a = axes[0], b = 0.95 * axes[1], c = 0.2 * axes[2];
+    // The point nearest to the viewer, and a few rays around it.
+    const glm::dvec3 top = (a * a.z + b * b.z + c * c.z) / std::sqrt(a.z * a.z + b.z * b.z + c.z * c.z);
+    Primitives primitives;
+    for (std::uint32_t k = 1; k <= 8; ++k)
+      primitives.ellipsoids.push_back(
+          {glm::vec3(0), 0.2f, glm::vec3(a * (1 + random.uniform(-1e-7, 1e-7))), glm::vec3(b), 0xFFFFFF, k});
+    View view;
+    view.projection = GetParam();
+    view.distance = 30;
+    const double depth = perspective ? view.distance - top.z : 1;
+    view.pixelSize = 2e-5 / depth;
+    view.size = {16, 8};
+    view.center = glm::dvec2(8, 4) - glm::dvec2(top) / (depth * view.pixelSize);
+    view.nearZ = 20;
+    view.farZ = -20;
+    const TileTarget target = targetOf(primitives, view);
+    const Planes force = castByForce(primitives, target);
+    for (const std::string& set : instructionSets()) {
+      useInstructionSet(set);
+      expectSame(castByLists(primitives, target), force, set.c_str());
+    }
+    useInstructionSet("");
   }
 }
 
