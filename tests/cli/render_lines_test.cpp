@@ -41,7 +41,7 @@ TEST_F(RenderLines, outlinesDarkenAndCostNothingWhenOff) {
     return out;
   };
   EXPECT_EQ(names({}), (Options{"spheres", "shade"}));
-  EXPECT_EQ(names({"--outlines", "creases"}), (Options{"spheres", "silhouette", "silhouette line", "shade"}));
+  EXPECT_EQ(names({"--outlines", "creases"}), (Options{"spheres", "silhouette", "shade"}));
 }
 
 TEST_F(RenderLines, lineOptionsChangeLines) {
