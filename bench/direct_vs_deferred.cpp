@@ -4,11 +4,11 @@
 //
 //   direct_vs_deferred [repetitions] > direct_vs_deferred.csv
 //
-// Both draw the same quadrics with the same vertex programs in the same order, and filter the same shadow map
-// with the same code; times are processor times, medians of interleaved repetitions, with reading back. The
-// direct program is bench/shaders/; deferred is the renderer. Lines need their neighbours' depths and
-// normals, which only deferred shading has: as in the paper, its time with lines is compared with the direct
-// one's without.
+// Both draw the same quadrics with the same vertex programs in the same order (but for tiles, as they are
+// drawn without a GPU), and filter the same shadow map with the same code; times are processor times, medians
+// of interleaved repetitions, with reading back. The direct program is bench/shaders/; deferred is the
+// renderer. Lines need their neighbours' depths and normals, which only deferred shading has: as in the
+// paper, its time with lines is compared with the direct one's without.
 
 #include <fmt/format.h>
 #include <glad/gl.h>

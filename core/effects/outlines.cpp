@@ -1,6 +1,5 @@
 #include "core/effects/outlines.h"
 
-#include <tbb/blocked_range2d.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -285,20 +284,15 @@ void drawOutlines(const SurfacePlanes& planes, const OutlineBlock& block, const 
   constexpr int kColumns = 128;
   const int rows = std::max(32, 4 * task.reach);  // few of them beside the margin
   const auto parts = [](int whole, int part) { return (whole + part - 1) / part; };
-  tbb::parallel_for(
-      tbb::blocked_range2d<int>(0, parts(planes.height, rows), 0, parts(planes.width, kColumns)),
-      [&](const tbb::blocked_range2d<int>& range) {
-        thread_local OutlinePatch patch;
-        for (int y = range.rows().begin(); y < range.rows().end(); ++y) {
-          for (int x = range.cols().begin(); x < range.cols().end(); ++x) {
-            patch.left = kColumns * x;
-            patch.right = std::min(patch.left + kColumns, planes.width);
-            patch.bottom = rows * y;
-            patch.top = std::min(patch.bottom + rows, planes.height);
-            HWY_DYNAMIC_DISPATCH(drawPatch)(task, patch, lines.data());
-          }
-        }
-      });
+  const int across = parts(planes.width, kColumns);
+  tbb::parallel_for(0, across * parts(planes.height, rows), [&](int i) {
+    thread_local OutlinePatch patch;
+    patch.left = kColumns * (i % across);
+    patch.right = std::min(patch.left + kColumns, planes.width);
+    patch.bottom = rows * (i / across);
+    patch.top = std::min(patch.bottom + rows, planes.height);
+    HWY_DYNAMIC_DISPATCH(drawPatch)(task, patch, lines.data());
+  });
 }
 
 }  // namespace meniscus::effects

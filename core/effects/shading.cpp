@@ -21,6 +21,8 @@ struct ShadeTask {
   const ShadeBlock* block;
   const LightPlanes* light;
   Nearness nearness;
+  float leastSquare;  // of a highlight's cosine
+  float perFull;      // a highlight is whole where the key light times this is 1
 };
 struct EncodeTask {
   float perSample;
@@ -58,18 +60,12 @@ HWY_INLINE V loadStrided(const T* from, std::size_t count, std::size_t stride, f
   return hn::Load(F(), values) * all(unit);
 }
 
-// A highlight is nothing where the squared cosine of its angle is no larger: less than 1e-8 of its light by
-// x^p <= exp(-2 p (1 - x) / (1 + x)), or seen along the surface.
-HWY_INLINE float leastSquare(float shininess) {
-  const float bound = 18.5f / (0.5f * shininess);
-  return std::max(1e-12f, (2 - bound) / (2 + bound));  // the former, too, if shininess is 0
-}
-
 // lit() of include/lighting.glsl. toEye(): unit vectors.
 template <typename ToEye>
-HWY_INLINE Vec3 lit(const ShadeBlock& b, const Vec3& albedo, const Vec3& normal, ToEye toEye, V visible,
+HWY_INLINE Vec3 lit(const ShadeTask& task, const Vec3& albedo, const Vec3& normal, ToEye toEye, V visible,
                     V sky) {
   const F f;
+  const ShadeBlock& b = *task.block;
   const V zero = hn::Zero(f);
   const V key = hn::Max(dot(normal, xyz(b.key)), zero) * all(b.key.w) * visible;
   const V fill = hn::Max(dot(normal, xyz(b.fill)), zero) * all(b.fill.w);
@@ -79,12 +75,11 @@ HWY_INLINE Vec3 lit(const ShadeBlock& b, const Vec3& albedo, const Vec3& normal,
   if (!(b.ambient.y > 0) || hn::AllFalse(f, reached)) return diffuse;
   const Vec3 halfway = add(add(xyz(b.key), toEye()), {zero, zero, all(1e-6f)});
   const V cosine = hn::Max(dot(normal, halfway), zero);  // times halfway's length
-  const V square = cosine * cosine / dot(halfway, halfway), least = all(leastSquare(b.ambient.z));
+  const V square = cosine * cosine / dot(halfway, halfway), least = all(task.leastSquare);
   const M bright = hn::And(reached, square > least);
   if (hn::AllFalse(f, bright)) return diffuse;
   const V mirrored = powerOfShare(hn::Max(square, least), 0.5f * b.ambient.z);
-  const float fullFrom = std::max(0.1f * b.key.w, 1e-30f);
-  const V fade = all(b.key.w) * hn::Min(key * all(1 / fullFrom), all(1.0f));
+  const V fade = all(b.key.w) * hn::Min(key * all(task.perFull), all(1.0f));
   const V highlight = hn::IfThenElseZero(bright, all(b.ambient.y) * mirrored * fade);
   return add(diffuse, {highlight, highlight, highlight});
 }
@@ -121,7 +116,7 @@ HWY_INLINE Light surfaceLight(const ShadeTask& task, std::size_t at, int x, int 
     const V hidden = half(hn::And(stored, hn::Set(U(), 0xFFFFu))), whole = half(hn::ShiftRight<16>(stored));
     sky = one - all(b.ambient.w) * hn::Min(hidden / hn::Max(whole, all(1e-5f)), one);
   }
-  Light l{lit(b, linearAlbedo(task, at), normalsAt(planes, at), toEye, visible, sky), one};
+  Light l{lit(task, linearAlbedo(task, at), normalsAt(planes, at), toEye, visible, sky), one};
   if (!light.traced.empty()) {
     const float* traced = light.traced.data() + 4 * at;
     const auto channel = [&](std::size_t c) { return loadStrided(traced + c, count, 4, 1); };
@@ -273,6 +268,22 @@ HWY_EXPORT(encodeRow);
 
 namespace {
 
+// A highlight is nothing where the squared cosine of its angle is no larger: less than 1e-8 of its light by
+// x^p <= exp(-2 p (1 - x) / (1 + x)), or seen along the surface.
+float leastSquare(float shininess) {
+  const float bound = 18.5f / (0.5f * shininess);
+  return std::max(1e-12f, (2 - bound) / (2 + bound));  // the former, too, if shininess is 0
+}
+
+ShadeTask taskOf(const SurfacePlanes& planes, const ShadeBlock& block, const LightPlanes& light) {
+  return {&planes,
+          &block,
+          &light,
+          Nearness(planes.view),
+          leastSquare(block.ambient.z),
+          1 / std::max(0.1f * block.key.w, 1e-30f)};
+}
+
 // Encodes the part of a row that is the picture's; what is not lit is backdrop.
 class RowWriter {
  public:
@@ -329,7 +340,7 @@ void addLight(const SurfacePlanes& planes, const ShadeBlock& block, const LightP
   }
   MENISCUS_CHECK(sum.x == planes.x && sum.y == planes.y && sum.width == planes.width &&
                  sum.height == planes.height);
-  const ShadeTask task{&planes, &block, &light, Nearness(planes.view)};
+  const ShadeTask task = taskOf(planes, block, light);
   forRows(planes.height, [&](int y) {
     const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(sum.width);
     HWY_DYNAMIC_DISPATCH(shadeRow)
@@ -354,7 +365,7 @@ void writePicture(const LightSum& sum, int samples, const glm::vec4& backdrop, c
 
 void shadePicture(const SurfacePlanes& planes, const ShadeBlock& block, const LightPlanes& light,
                   const PictureRows& out) {
-  const ShadeTask task{&planes, &block, &light, Nearness(planes.view)};
+  const ShadeTask task = taskOf(planes, block, light);
   const RowWriter writer(out, 1, block.backdrop, planes.x, planes.width);
   forRows(out.height, [&](int row) {
     const int y = out.y + row - planes.y;

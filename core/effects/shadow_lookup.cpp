@@ -85,11 +85,10 @@ HWY_INLINE M shadowedAt(const Texels& texels, const Receivers& r, V texelX, V te
   return height > hn::Max(least, hn::Zero(F()));
 }
 
-HWY_INLINE V litSamples(const ShadowTask& task, const Texels& texels, const Receivers& r, int first,
-                        int end) {
+// How many of the first samples are lit.
+HWY_INLINE V litSamples(const ShadowTask& task, const Texels& texels, const Receivers& r, int count) {
   V sum = hn::Zero(F());
-  for (int i = first; i < end; ++i) {
-    const auto k = static_cast<std::size_t>(i);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
     const M dark =
         shadowedAt(texels, r, hn::Floor(r.x + all(task.offsetX[k])), hn::Floor(r.y + all(task.offsetY[k])));
     sum = sum + hn::IfThenZeroElse(dark, all(1.0f));
@@ -143,6 +142,18 @@ V withAllSamples(const ShadowTask& task, const Texels& texels, const Receivers& 
   return hn::Load(f, sums);
 }
 
+HWY_INLINE V softShare(const ShadowTask& task, const Texels& texels, const Receivers& r, M wanted) {
+  const F f;
+  const V zero = hn::Zero(f), perSample = all(1 / static_cast<float>(task.samples));
+  if (task.probes == 0) return litSamples(task, texels, r, task.samples) * perSample;
+  const V probed = litSamples(task, texels, r, task.probes);
+  const M agree = hn::Or(probed == zero, probed == all(static_cast<float>(task.probes)));
+  const M disagree = hn::AndNot(agree, wanted);
+  const V agreed = hn::IfThenElseZero(probed > zero, all(1.0f));
+  if (hn::AllFalse(f, disagree)) return agreed;
+  return hn::IfThenElse(disagree, withAllSamples(task, texels, r, disagree, probed) * perSample, agreed);
+}
+
 void lookUpRows(const ShadowTask& task, int firstRow, int lastRow, std::uint16_t* out) {
   const F f;
   const V zero = hn::Zero(f);
@@ -163,23 +174,7 @@ void lookUpRows(const ShadowTask& task, int firstRow, int lastRow, std::uint16_t
       }
       r.x = hn::IfThenElseZero(wanted, r.x);  // a place in the map, whatever the other lanes hold
       r.y = hn::IfThenElseZero(wanted, r.y);
-      if (!task.soft) {
-        storeShares(hn::IfThenElseZero(wanted, litAround(texels, r)), here, out + at);
-        continue;
-      }
-      const V perSample = all(1 / static_cast<float>(task.samples));
-      V share;
-      if (task.probes == 0) {
-        share = litSamples(task, texels, r, 0, task.samples) * perSample;
-      } else {
-        const V probed = litSamples(task, texels, r, 0, task.probes);
-        const M agree = hn::Or(probed == zero, probed == all(static_cast<float>(task.probes)));
-        const M disagree = hn::AndNot(agree, wanted);
-        share = hn::IfThenElseZero(probed > zero, all(1.0f));
-        if (!hn::AllFalse(f, disagree))
-          share =
-              hn::IfThenElse(disagree, withAllSamples(task, texels, r, disagree, probed) * perSample, share);
-      }
+      const V share = task.soft ? softShare(task, texels, r, wanted) : litAround(texels, r);
       storeShares(hn::IfThenElseZero(wanted, share), here, out + at);
     }
   }

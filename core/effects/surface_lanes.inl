@@ -1,5 +1,5 @@
-// Points, normals and nearness of vectors of pixels, by the formulas of shaders/shared/projection.glsl (viewPoint) and
-// octahedral.glsl.
+// Points, normals and nearness of vectors of pixels, by the formulas of shaders/shared/projection.glsl
+// (viewPoint), octahedral.glsl and include/scene_depth.glsl.
 #if defined(MENISCUS_EFFECTS_SURFACE_LANES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef MENISCUS_EFFECTS_SURFACE_LANES_INL
 #undef MENISCUS_EFFECTS_SURFACE_LANES_INL

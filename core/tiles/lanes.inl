@@ -32,8 +32,8 @@ HWY_INLINE V all(float x) {
   return hn::Set(F(), x);
 }
 
-// The nearest whole number to 0 <= v < 2^23 is in the low bits of the float v + 2^23. Conversions would ask for
-// numbers out of range first.
+// The nearest whole number to 0 <= v < 2^23 is in the low bits of the float v + 2^23. Conversions would first
+// ask for numbers out of range.
 HWY_INLINE hn::Vec<I> bitsOfTwoTo23() {
   return hn::BitCast(I(), all(8388608.0f));
 }

@@ -128,15 +128,10 @@ HWY_INLINE void blend(hn::Mask<U> m, std::uint32_t value, std::uint32_t* target)
   hn::Store(hn::IfThenElse(m, hn::Set(U(), value), hn::Load(U(), target)), U(), target);
 }
 
-// What of the nearest hits is kept beside their depth.
-struct Kept {
-  bool normal, albedo, id;
-  bool distance;  // position and record
-};
-
-// Keeps the visible end of a chord where it is the nearest so far. Returns whether it is anywhere.
-HWY_INLINE bool keepNearest(const Chord& chord, const QuadricRecord& q, std::uint32_t index, const Kept& kept,
-                            const TileRays& rays, std::size_t k, State& s) {
+// Keeps the visible end of a chord where it is the nearest so far, and what the channels need of it. Returns
+// whether it is anywhere.
+HWY_INLINE bool keepNearest(const Chord& chord, const QuadricRecord& q, std::uint32_t index,
+                            const PlaneChannels& wanted, const TileRays& rays, std::size_t k, State& s) {
   const F f;
   const V centerZ = all(q.centerZ), nearZ = all(rays.nearZ);
   V z = centerZ + chord.entry.z;
@@ -155,29 +150,30 @@ HWY_INLINE bool keepNearest(const Chord& chord, const QuadricRecord& q, std::uin
     position = choose(inside, chord.exit, position);
     normal = choose(inside, scale(chord.exitNormal, all(-1.0f)), normal);
   }
-  if (kept.normal) {
+  if (wanted.normal) {
     blend(nearer, normal.x, s.normal[0] + k);
     blend(nearer, normal.y, s.normal[1] + k);
     blend(nearer, normal.z, s.normal[2] + k);
   }
   const auto nearerBits = hn::RebindMask(U(), nearer);
-  if (kept.albedo) blend(nearerBits, q.albedo[0], s.albedo + k);
-  if (kept.id) blend(nearerBits, q.id[0], s.id + k);
-  if (kept.distance) {
+  if (wanted.albedo) blend(nearerBits, q.albedo[0], s.albedo + k);
+  if (wanted.id) blend(nearerBits, q.id[0], s.id + k);
+  if (wanted.distance) {
     blend(nearer, position.x, s.position[0] + k);
     blend(nearer, position.y, s.position[1] + k);
     blend(nearer, position.z, s.position[2] + k);
     blend(nearerBits, index, s.record + k);
   }
-  if (q.kind == QuadricKind::cylinder && (kept.albedo || kept.id)) {
+  if (q.kind == QuadricKind::cylinder && (wanted.albedo || wanted.id)) {
     const M second = hn::And(nearer, dot(position, splat(q.axisU)) > hn::Zero(f));
-    if (kept.albedo) blend(hn::RebindMask(U(), second), q.albedo[1], s.albedo + k);
-    if (kept.id) blend(hn::RebindMask(U(), second), q.id[1], s.id + k);
+    if (wanted.albedo) blend(hn::RebindMask(U(), second), q.albedo[1], s.albedo + k);
+    if (wanted.id) blend(hn::RebindMask(U(), second), q.id[1], s.id + k);
   }
   return true;
 }
 
-bool castOne(const QuadricRecord& q, std::uint32_t index, const Kept& kept, const TileRays& rays, State& s) {
+bool castOne(const QuadricRecord& q, std::uint32_t index, const PlaneChannels& wanted, const TileRays& rays,
+             State& s) {
   const auto x0 = static_cast<float>(q.pixelX - rays.cornerX),
              y0 = static_cast<float>(q.pixelY - rays.cornerY);
   // Whether none of a vector of rays can meet it in front of what is there.
@@ -193,7 +189,7 @@ bool castOne(const QuadricRecord& q, std::uint32_t index, const Kept& kept, cons
       for (std::size_t k = 0; k < kTilePixels; k += laneCount()) {
         if (isPassed(k)) continue;
         const Chord c = sphereChord(rayOf(rays, s, q, x0, y0, k), all(q.radius));
-        any = keepNearest(c, q, index, kept, rays, k, s) || any;
+        any = keepNearest(c, q, index, wanted, rays, k, s) || any;
       }
       break;
     case QuadricKind::cylinder:
@@ -201,14 +197,14 @@ bool castOne(const QuadricRecord& q, std::uint32_t index, const Kept& kept, cons
         if (isPassed(k)) continue;
         const Chord c =
             cylinderChord(rayOf(rays, s, q, x0, y0, k), splat(q.axisU), all(q.radii[0]), all(q.radius));
-        any = keepNearest(c, q, index, kept, rays, k, s) || any;
+        any = keepNearest(c, q, index, wanted, rays, k, s) || any;
       }
       break;
     case QuadricKind::ellipsoid:
       for (std::size_t k = 0; k < kTilePixels; k += laneCount()) {
         if (isPassed(k)) continue;
         const Chord c = ellipsoidChord(rayOf(rays, s, q, x0, y0, k), q);
-        any = keepNearest(c, q, index, kept, rays, k, s) || any;
+        any = keepNearest(c, q, index, wanted, rays, k, s) || any;
       }
       break;
   }
@@ -279,13 +275,12 @@ bool castTile(const QuadricRecord* records, const std::uint32_t* list, std::size
     hn::Store(direction.y, f, s.direction[1] + k);
     hn::Store(direction.z, f, s.direction[2] + k);
   }
-  const Kept kept{channels.normal, channels.albedo, channels.id, channels.distance};
   float lowest = -std::numeric_limits<float>::infinity();
   for (std::size_t i = 0; i < count; ++i) {
     const QuadricRecord& q = records[list[i]];
     if (q.front + slack < lowest) break;
     if (q.front < lowest) continue;
-    if (castOne(q, list[i], kept, rays, s)) lowest = lowestHit(s);
+    if (castOne(q, list[i], channels, rays, s)) lowest = lowestHit(s);
   }
   return finish(records, rays, channels, s, out);
 }

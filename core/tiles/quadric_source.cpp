@@ -131,7 +131,7 @@ void QuadricSource::record(std::size_t index, QuadricRecord& out) const {
   out = {};
   out.lowY = -std::numeric_limits<float>::infinity();
   out.highY = std::numeric_limits<float>::infinity();
-  glm::dvec3 center, along;  // along: a cylinder's ends
+  glm::dvec3 center, along;  // along: from a cylinder's one end to the other
   double size = 0, reach = 0;
   if (q.sphere) {
     const SpherePrimitive& s = *q.sphere;
